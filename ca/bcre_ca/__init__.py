@@ -1,0 +1,12 @@
+"""Two-layer cellular automaton of sandpile surfaces (Pla-Castells, García-Fernández, Martínez).
+
+Start at :mod:`bcre_ca.step` for the rule itself, :mod:`bcre_ca.rule` for its parameters,
+:mod:`bcre_ca.evolve` for running it and :mod:`bcre_ca.theory` for what can be said of it with
+pencil and paper.
+"""
+
+from bcre_ca.evolve import Pile, advance, evolve, frames
+from bcre_ca.rule import Rule, UnstableStep
+from bcre_ca.step import step
+
+__all__ = ["Pile", "Rule", "UnstableStep", "advance", "evolve", "frames", "step"]

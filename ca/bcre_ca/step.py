@@ -1,0 +1,87 @@
+r"""One step of the automaton, in plain NumPy: the executable definition of the rule.
+
+With h the static and R the rolling layer, x running downhill and dh = h(i+1) - h(i),
+
+    F(i)  = v R(i) - D (R(i+1) - R(i))/d               flux from cell i to cell i+1
+    E(i)  = gamma R(i) ((h(i) - h(i+1))/d - Sc)        eroded from h, added to R
+    R(i) += dt/d (F(i-1) - F(i)) + dt E(i)
+    h(i) -= dt E(i)
+
+(equations 2 to 6 of the paper, with dt and d restored). The synchronous rule reads everything
+from the old state; the in-place rules visit the cells one after the other and read what they find.
+
+Ends: ``"open"`` has a closed top (no flux into cell 0) and an open foot, where R leaves by
+advection and the surface goes on at the repose slope, so that nothing is exchanged in the last
+cell. ``"periodic"`` joins the ends in R and in the height above the repose line, u = h + Sc x.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bcre_ca.rule import Ends, Rule
+
+Array = NDArray[np.float64]
+
+
+def step(h: Array, R: Array, rule: Rule, ends: Ends = "open") -> tuple[Array, Array, float]:
+    """One step of the rule; no judgement of its stability.
+
+    Parameters
+    ----------
+    h, R: static and rolling layer at the N cell centres, lengths, shape (N,).
+    rule: the automaton's parameters.
+    ends: ``"open"`` or ``"periodic"``.
+
+    Returns
+    -------
+    h, R: the new layers, shape (N,).
+    outflow: what left through the foot, in units of R (times d: an area).
+    """
+    if rule.order == "synchronous":
+        return _synchronous(h, R, rule, ends)
+    return _in_place(h, R, rule, ends)
+
+
+def _synchronous(h: Array, R: Array, rule: Rule, ends: Ends) -> tuple[Array, Array, float]:
+    c, b, q, k, s = rule.coefficients()
+    if ends == "periodic":
+        R_next = np.append(R[1:], R[0])
+        h_next = np.append(h[1:], h[0] - period_drop(rule, h.size))
+        flux_out = q * R - b * R_next
+        flux_in = np.append(flux_out[-1], flux_out[:-1])
+        exchange = k * R * ((h - h_next) - s)
+        outflow = 0.0
+    else:
+        flux_out = np.append(q * R[:-1] - b * R[1:], c * R[-1])
+        flux_in = np.append(0.0, flux_out[:-1])
+        exchange = np.append(k * R[:-1] * ((h[:-1] - h[1:]) - s), 0.0)
+        outflow = float(flux_out[-1])
+    return h - exchange, R + ((flux_in - flux_out) + exchange), outflow
+
+
+def _in_place(h: Array, R: Array, rule: Rule, ends: Ends) -> tuple[Array, Array, float]:
+    c, b, q, k, s = rule.coefficients()
+    h, R, last = h.copy(), R.copy(), h.size - 1
+    outflow = 0.0
+    for i in range(last + 1) if rule.order == "right" else range(last, -1, -1):
+        if i < last:
+            flux = q * R[i] - b * R[i + 1]
+            exchange = k * R[i] * ((h[i] - h[i + 1]) - s)
+            R[i + 1] += flux
+        elif ends == "periodic":
+            flux = q * R[i] - b * R[0]
+            exchange = k * R[i] * ((h[i] - (h[0] - period_drop(rule, h.size))) - s)
+            R[0] += flux
+        else:
+            flux, exchange = c * R[i], 0.0
+            outflow = float(flux)
+        R[i] += exchange - flux
+        h[i] -= exchange
+    return h, R, outflow
+
+
+def period_drop(rule: Rule, cells: int) -> float:
+    """Fall of the repose line over one period, Sc N d: a periodic h repeats up to this."""
+    return rule.Sc * rule.d * cells

@@ -1,0 +1,120 @@
+r"""The BCRE equations as a py-pde equation.
+
+    dR/dt + d/dx (v R - D dR/dx) = E        dh/dt = -E
+    E = gamma R (S - Sc) - kappa R d2h/dx2,   S = -dh/dx
+
+(Bouchaud, Cates, Prakash, Edwards, J. Phys. I France 4 (1994) 1383), in u = h + Sc x, the height
+above the repose line: E = -R (gamma u_x + kappa u_xx).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from pde import CartesianGrid, FieldCollection, PDEBase, ScalarField
+
+from bcre_pde import fluxes
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Material:
+    """What the sand is: the coefficients of BCRE.
+
+    Parameters
+    ----------
+    v: drift speed of the rolling layer, length/time, >= 0.
+    D: diffusion of the rolling layer, length^2/time, >= 0.
+    gamma: exchange rate, 1/time, >= 0.
+    Sc: repose slope, tangent of the angle of repose, >= 0.
+    kappa: curvature term of the exchange, length/time, >= 0.
+
+    Raises
+    ------
+    ValueError
+        naming the parameter, its value and what is allowed.
+    """
+
+    v: float
+    D: float
+    gamma: float
+    Sc: float
+    kappa: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("v", "D", "gamma", "Sc", "kappa"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value >= 0):
+                raise ValueError(f"{name} = {value!r}: must be a finite number >= 0")
+
+
+class BCRE(PDEBase):
+    """BCRE on a line; the state holds the fields u, R and "ends".
+
+    The third field serves open ends: its first cell is u on the foot, its last one the outflow so
+    far divided by the length of the domain. As part of the state the outflow is integrated by the
+    same solver, so that ``length (mean(u) + mean(R) + ends[-1])`` is constant to rounding.
+
+    Parameters
+    ----------
+    material: the coefficients.
+    grid: a line of N >= 8 cells from x = 0, periodic or not.
+    """
+
+    explicit_time_dependence = False
+
+    def __init__(self, material: Material, grid: CartesianGrid) -> None:
+        super().__init__()
+        (cells,) = grid.shape
+        if cells < fluxes.SMALLEST_GRID:
+            raise ValueError(f"cells = {cells}: BCRE needs at least {fluxes.SMALLEST_GRID} cells")
+        self.material = material
+        self.dx = float(grid.discretization[0])
+        self._periodic = bool(grid.periodic[0])
+        self._padded = np.empty((2, cells + 2 * fluxes.GHOSTS))
+        self._faces = np.empty((2, cells + 1))
+        self._rate = self.state(grid, np.zeros(cells), np.zeros(cells))
+
+    @staticmethod
+    def state(grid: CartesianGrid, u: Array, R: Array, u_foot: float = 0.0) -> FieldCollection:
+        """Initial state: u and R at the cell centres, shape (N,), u on the foot, no outflow yet."""
+        names = ("u", "R", "ends")
+        ends = np.zeros_like(R)
+        ends[0] = u_foot
+        rows = (u, R, ends)
+        return FieldCollection(
+            [ScalarField(grid, row, label=name) for name, row in zip(names, rows, strict=True)]
+        )
+
+    def evolution_rate(self, state: FieldCollection, t: float = 0) -> FieldCollection:
+        """The right-hand side, in one field that every call overwrites (py-pde copies it)."""
+        material = self.material
+        fluxes.rate(
+            state.data,
+            self._rate.data,
+            self._padded,
+            self._faces,
+            material.v,
+            material.D,
+            material.gamma,
+            material.kappa,
+            self.dx,
+            self._periodic,
+        )
+        return self._rate
+
+    def largest_explicit_step(self, largest_R: float) -> float:
+        """Step at which an explicit Runge-Kutta method of order 4 is still stable.
+
+        The spectra of the stencils on the negative real axis reach 32/15 for the drift v/dx and for the
+        climb gamma R/dx, and 272/45 for the spreads D/dx^2 and kappa R/dx^2; the method reaches 2.78.
+        """
+        material, dx = self.material, self.dx
+        drift = max(material.v, material.gamma * largest_R)
+        spread = max(material.D, material.kappa * largest_R)
+        rate = 32 / 15 * drift / dx + 272 / 45 * spread / dx**2
+        return 2.78 / rate if rate > 0 else math.inf
