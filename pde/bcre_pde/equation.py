@@ -73,6 +73,7 @@ class BCRE(PDEBase):
         if cells < fluxes.SMALLEST_GRID:
             raise ValueError(f"cells = {cells}: BCRE needs at least {fluxes.SMALLEST_GRID} cells")
         self.material = material
+        self.evaluations = 0
         self.dx = float(grid.discretization[0])
         self._periodic = bool(grid.periodic[0])
         self._padded = np.empty((2, cells + 2 * fluxes.GHOSTS))
@@ -93,6 +94,7 @@ class BCRE(PDEBase):
     def evolution_rate(self, state: FieldCollection, t: float = 0) -> FieldCollection:
         """The right-hand side, in one field that every call overwrites (py-pde copies it)."""
         material = self.material
+        self.evaluations += 1
         fluxes.rate(
             state.data,
             self._rate.data,

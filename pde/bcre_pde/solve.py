@@ -1,0 +1,223 @@
+"""Solving BCRE with py-pde's solvers: the one place that calls them."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+from pde import CartesianGrid, FieldCollection
+from pde.solvers import RungeKuttaSolver, ScipySolver
+
+from bcre_pde.equation import BCRE, Material
+
+Array = NDArray[np.float64]
+Ends = Literal["open", "periodic"]
+Method = Literal["runge-kutta", "RK45", "DOP853", "LSODA", "BDF"]
+
+TOLERANCE = 1e-8
+"""Default local error per step, relative to the largest rolling layer."""
+
+
+class SolveError(RuntimeError):
+    """A solver that gave up, with the time up to which it came."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """An initial value problem for BCRE.
+
+    Parameters
+    ----------
+    initial: function of positions x, shape (N,), that returns h and R there, lengths.
+    material: the coefficients.
+    length: the domain is 0 <= x <= length, x running downhill.
+    ends: ``"open"`` (closed top, open foot) or ``"periodic"`` (in h + Sc x and R).
+    """
+
+    initial: Callable[[Array], tuple[Array, Array]]
+    material: Material
+    length: float
+    ends: Ends = "open"
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Layers at the cell centres ``x`` (N,) and times ``t`` (T,): ``h``, ``R`` of shape (T, N).
+
+    ``outflow`` (T,) is the area that has left through the foot, so that
+    ``dx sum(h + R) + outflow`` does not change; ``evaluations`` counts right-hand sides.
+    """
+
+    problem: Problem
+    x: Array
+    t: Array
+    h: Array
+    R: Array
+    outflow: Array
+    steps: int
+    evaluations: int
+    wall_s: float
+
+    @property
+    def dx(self) -> float:
+        """Cell length."""
+        return self.problem.length / self.x.size
+
+    @property
+    def u(self) -> Array:
+        """Height above the repose line, h + Sc x, shape (T, N)."""
+        return self.h + self.problem.material.Sc * self.x
+
+    def mass(self) -> Array:
+        """Area of sand in the domain at every time, shape (T,)."""
+        rows = zip(self.h, self.R, strict=True)
+        return np.array([self.dx * (math.fsum(h) + math.fsum(R)) for h, R in rows])
+
+
+def solve(
+    problem: Problem,
+    times: Sequence[float],
+    cells: int,
+    method: Method = "runge-kutta",
+    tolerance: float = TOLERANCE,
+    stop: Callable[[Solution], bool] | None = None,
+) -> Solution:
+    """Solve BCRE up to the last of the ascending ``times``.
+
+    Parameters
+    ----------
+    problem: what to solve.
+    times: when to record the layers; 0 records the start.
+    cells: number N of cells, >= 8.
+    method: ``"runge-kutta"`` is py-pde's adaptive explicit Runge-Kutta-Fehlberg solver, kept below
+        the stable step; the others go through py-pde to SciPy's solver of that name.
+    tolerance: local error per step, relative to the largest rolling layer (and, for SciPy's
+        solvers, to each value).
+    stop: asked after every recorded time with the solution so far; True ends the solve there.
+
+    Raises
+    ------
+    SolveError
+        where the solver gave up; ValueError for arguments that are not allowed.
+    """
+    times = _ascending(times)
+    if method not in get_args(Method):
+        raise ValueError(f"method = {method!r}: must be one of {get_args(Method)}")
+    if not 0 < tolerance < 1:
+        raise ValueError(f"tolerance = {tolerance!r}: must lie between 0 and 1")
+    periodic = problem.ends == "periodic"
+    grid = CartesianGrid([[0.0, problem.length]], cells, periodic=periodic)
+    equation = BCRE(problem.material, grid)
+    state = _initial_state(problem, grid)
+    record = _Recorder(problem, grid)
+    began = time.perf_counter()
+    now = 0.0
+    for then in times:
+        if then > now:
+            state = _advance(equation, state, (now, then), method, tolerance, record)
+            now = then
+        record.add(state, then, time.perf_counter() - began)
+        if stop is not None and stop(record.solution()):
+            break
+    return record.solution()
+
+
+class _Recorder:
+    """Gathers frames and counts into a :class:`Solution`."""
+
+    def __init__(self, problem: Problem, grid: CartesianGrid) -> None:
+        self.problem = problem
+        self.x: Array = grid.cell_coords[:, 0]
+        self.frames: list[tuple[float, Array]] = []
+        self.steps = 0
+        self.evaluations = 0
+        self.wall_s = 0.0
+
+    def add(self, state: FieldCollection, t: float, wall_s: float) -> None:
+        self.frames.append((t, state.data.copy()))
+        self.wall_s = wall_s
+
+    def solution(self) -> Solution:
+        data = np.array([frame for _, frame in self.frames])
+        repose_line = self.problem.material.Sc * self.x
+        return Solution(
+            problem=self.problem,
+            x=self.x,
+            t=np.array([t for t, _ in self.frames]),
+            h=data[:, 0] - repose_line,
+            R=data[:, 1],
+            outflow=data[:, 2, -1] * self.problem.length,
+            steps=self.steps,
+            evaluations=self.evaluations,
+            wall_s=self.wall_s,
+        )
+
+
+def _initial_state(problem: Problem, grid: CartesianGrid) -> FieldCollection:
+    x = grid.cell_coords[:, 0]
+    h, R = problem.initial(x)
+    h_foot, _ = problem.initial(np.array([problem.length]))
+    Sc = problem.material.Sc
+    if not (np.isfinite(h).all() and np.isfinite(R).all()):
+        raise ValueError("the initial h and R must be finite")
+    return BCRE.state(grid, h + Sc * x, R, float(h_foot[0]) + Sc * problem.length)
+
+
+def _advance(
+    equation: BCRE,
+    state: FieldCollection,
+    span: tuple[float, float],
+    method: Method,
+    tolerance: float,
+    record: _Recorder,
+) -> FieldCollection:
+    largest_R = float(np.abs(state[1].data).max()) or 1.0
+    absolute = tolerance * largest_R
+    if method == "runge-kutta":
+        bound = equation.largest_explicit_step(largest_R)
+        solver = partial(_bounded_runge_kutta, dt_max=bound, tolerance=absolute)
+        first = min(bound, span[1] - span[0])
+    else:
+        solver = partial(ScipySolver, method=method, rtol=tolerance, atol=absolute)
+        first = None
+    counted = equation.evaluations
+    try:
+        end, info = equation.solve(
+            state, span, dt=first, tracker=None, solver=solver, backend="numpy", ret_info=True
+        )
+    except RuntimeError as failure:
+        raise SolveError(f"{method} gave up between t = {span[0]:.6g} and {span[1]:.6g}: {failure}") from failure
+    if not info["controller"]["successful"]:
+        # py-pde returns quietly where it was interrupted.
+        raise KeyboardInterrupt
+    if not np.isfinite(end.data).all():
+        raise SolveError(f"{method} left no finite layer at t = {span[1]:.6g}")
+    record.steps += info["solver"]["steps"]
+    record.evaluations += equation.evaluations - counted
+    return end
+
+
+def _bounded_runge_kutta(pde: BCRE, dt_max: float, **options: Any) -> RungeKuttaSolver:
+    """py-pde's adaptive solver that does not have to find the stable step by failing.
+
+    Without a bound it would grow its step fourfold wherever nothing happens, until rounding
+    errors have been amplified to the size of the tolerance.
+    """
+    solver = RungeKuttaSolver(pde, adaptive=True, **options)
+    solver.dt_max = dt_max
+    return solver
+
+
+def _ascending(times: Sequence[float]) -> list[float]:
+    ordered = [float(t) for t in times]
+    if not ordered or ordered[0] < 0 or not all(map(math.isfinite, ordered)):
+        raise ValueError(f"times = {ordered!r}: must be finite, >= 0 and not empty")
+    if any(a >= b for a, b in zip(ordered, ordered[1:], strict=False)):
+        raise ValueError(f"times = {ordered!r}: must ascend")
+    return ordered
