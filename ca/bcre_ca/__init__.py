@@ -5,8 +5,18 @@ Start at :mod:`bcre_ca.step` for the rule itself, :mod:`bcre_ca.rule` for its pa
 pencil and paper.
 """
 
-from bcre_ca.evolve import Pile, advance, evolve, frames
+from bcre_ca.evolve import MARGIN, Pile, advance, evolve, frames, largest_stable_step
 from bcre_ca.rule import Rule, UnstableStep
 from bcre_ca.step import step
 
-__all__ = ["Pile", "Rule", "UnstableStep", "advance", "evolve", "frames", "step"]
+__all__ = [
+    "MARGIN",
+    "Pile",
+    "Rule",
+    "UnstableStep",
+    "advance",
+    "evolve",
+    "frames",
+    "largest_stable_step",
+    "step",
+]

@@ -16,9 +16,7 @@ import math
 from scipy.optimize import minimize_scalar
 
 
-def amplification(
-    v: float, D: float, sigma: float, d: float, dt: float, z: complex
-) -> complex:
+def amplification(v: float, D: float, sigma: float, d: float, dt: float, z: complex) -> complex:
     """G(z), the factor per step of R(i) = z^(-i) on a frozen slope with gamma (S - Sc) = sigma."""
     return 1 + dt * sigma - v * dt / d * (1 - z) + D * dt / d**2 * (z - 2 + 1 / z)
 

@@ -139,9 +139,7 @@ def _change(u, R, u_face, flux, out, gamma, kappa, dx, n):  # type: ignore[no-un
     slope, bend = gamma / dx, kappa / (180 * dx * dx)
     for i in range(n):
         gradient = u_face_out[i] - u_face[i]
-        curvature = (
-            2 * (u0[i] + u6[i]) - 27 * (u1[i] + u5[i]) + 270 * (u2[i] + u4[i]) - 490 * u3[i]
-        )
+        curvature = 2 * (u0[i] + u6[i]) - 27 * (u1[i] + u5[i]) + 270 * (u2[i] + u4[i]) - 490 * u3[i]
         exchange = -max(R[i], 0.0) * (slope * gradient + bend * curvature)
         u_rate[i] = -exchange
         R_rate[i] = (flux[i] - flux_out[i]) / dx + exchange

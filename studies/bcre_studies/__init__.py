@@ -1,0 +1,1 @@
+"""The studies that bring automaton and PDE together; ``bcre list`` names them."""

@@ -1,0 +1,129 @@
+r"""The paper's three figures, run in both models from the same initial condition.
+
+Compared is the rolling layer R(x) at the end: the relative L1 difference of the automaton, with
+cells of d = 1, 1/2 and 1/4, from BCRE as it stands and from BCRE with the coefficients of the
+automaton's modified equation (Warming and Hyett 1974; ``bcre_ca.theory``)
+
+    D_eff = D + (v d/2)(1 - v dt/d)        kappa_eff = gamma d/2
+
+The paper gives v, D and gamma of its figures 1 to 3; all else is ours and stands in the scenes.
+Figure 1 is compared at t = 250, in mid-climb, with dt = 0.4 d; figures 2 and 3 at their end.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+import bcre_pde
+from bcre_studies.claim import Claim, Verdict
+from bcre_studies.compare import compare, sample
+from bcre_studies.report import style
+from bcre_studies.scene import Scene, load
+from bcre_studies.simulate import (
+    as_run,
+    effective_problem_of,
+    frame_times,
+    problem_of,
+    profiles,
+    run_automaton,
+)
+from bcre_studies.work import each
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+TITLE = "The paper's figures in both models"
+TOLERANCE = 0.05
+WHY = (
+    "5 % of the area under R: about the width of a line in the paper's figures, below which "
+    "its reader could not tell the two apart"
+)
+REFINEMENTS = (1, 2, 4)
+FIGURES = ("figure1", "figure2", "figure3")
+FRAMES = 5
+
+
+def figure_scene(name: str, refinement: int) -> Scene:
+    """The scene of one of the paper's figures on cells ``refinement`` times smaller."""
+    scene = load(name)
+    cells = scene.domain.cells * refinement
+    if name == "figure1":
+        return scene.with_changes(cells=cells, until=250.0, step=0.4 / refinement)
+    return scene.with_changes(cells=cells, step=0.2 / refinement)
+
+
+def run() -> dict[str, pd.DataFrame]:
+    """The table of differences, and the profiles that the figure shows."""
+    cases = [(name, refinement) for name in FIGURES for refinement in REFINEMENTS]
+    rows = each(_compare_case, cases, "paper_figures")
+    return {
+        "comparison": pd.DataFrame(rows),
+        "profiles": pd.concat([_profiles(name) for name in FIGURES], ignore_index=True),
+    }
+
+
+def _compare_case(case: tuple[str, int]) -> dict[str, Any]:
+    name, refinement = case
+    scene = figure_scene(name, refinement)
+    x = scene.centres()
+    result = compare(
+        scene, [scene.time.until], lambda run: sample(run, x), TOLERANCE, coarsest=200, finest=800
+    )
+    return {"quantity": "R(x) at the end", "case": name, "d": scene.d, **result.row()}
+
+
+def _profiles(name: str) -> pd.DataFrame:
+    """Frames of both models; the PDE on 400 cells, four times the automaton's."""
+    scene = figure_scene(name, 1)
+    times = frame_times(scene, FRAMES)
+    solutions = {
+        "pde": bcre_pde.solve(problem_of(scene), times, 400),
+        "pde effective": bcre_pde.solve(effective_problem_of(scene), times, 400),
+    }
+    runs = {"ca": run_automaton(scene, times)} | {
+        label: as_run(scene, solution) for label, solution in solutions.items()
+    }
+    return pd.concat([profiles(run, figure=name, model=label) for label, run in runs.items()])
+
+
+def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
+    """One claim a figure, judged on the paper's own cells, d = 1."""
+    table = tables["comparison"]
+    claims = []
+    for name in FIGURES:
+        rows = table[table["case"] == name]
+        coarse, fine = rows.iloc[0], rows.iloc[-1]
+        claims.append(
+            Claim(
+                name=f"{name} profile",
+                statement=f"The automaton's rolling layer in {name} is that of BCRE.",
+                verdict=Verdict(coarse["verdict"]),
+                evidence=(
+                    f"relative L1 difference at d = 1: {coarse['difference']:.3g} from BCRE as it stands, "
+                    f"{coarse['difference_effective']:.2g} from BCRE with D_eff and kappa_eff; "
+                    f"at d = 1/4: {fine['difference']:.3g} and {fine['difference_effective']:.2g}"
+                ),
+                tolerance=f"{TOLERANCE:.0%}: {WHY}",
+            )
+        )
+    return claims
+
+
+def draw(tables: dict[str, pd.DataFrame]) -> Figure:
+    """The paper's figures again: h for figure 1, R for figures 2 and 3, both models."""
+    table = tables["profiles"]
+    figure, axes = style.panels(1, 3)
+    for axis, name in zip(axes, FIGURES, strict=True):
+        column = "h" if name == "figure1" else "R"
+        frames = table[table["figure"] == name]
+        for model, lines in frames.groupby("model", sort=False):
+            for t, line in lines.groupby("t"):
+                look = style.MODELS[str(model)] if t > 0 else style.START
+                axis.plot(line["x"], line[column], **look)
+        axis.set_title(load(name).title, loc="left")
+        axis.set_xlabel("x (downhill)")
+        axis.set_ylabel("static layer h" if column == "h" else "rolling layer R")
+    style.legend(figure, [*style.MODELS, "start"])
+    return figure

@@ -1,0 +1,189 @@
+"""The terms that a scene's initial surface and rolling layer are added up from.
+
+Each is a function of position, so that every grid of both models samples the same profile.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, PrivateAttr
+from scipy.interpolate import CubicSpline
+
+if TYPE_CHECKING:
+    from bcre_studies.scene import Scene
+
+Array = NDArray[np.float64]
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+
+NOISE_WAVES = 32
+"""A rough surface is made of this many sines, the shortest one length/32 long."""
+
+
+class ProfileError(ValueError):
+    """A table that cannot serve as a profile."""
+
+
+class _Term(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+
+class Incline(_Term):
+    """h = slope (length - x): zero at the foot."""
+
+    kind: Literal["incline"]
+    slope: Finite
+
+    def height(self, x: Array, scene: Scene) -> Array:
+        return self.slope * (scene.domain.length - x)
+
+
+class Sine(_Term):
+    """h = amplitude sin(2 pi x/wavelength)."""
+
+    kind: Literal["sine"]
+    amplitude: Finite
+    wavelength: Positive
+
+    def height(self, x: Array, scene: Scene) -> Array:
+        return self.amplitude * np.sin(2 * np.pi * x / self.wavelength)
+
+
+class Noise(_Term):
+    """A sum of 32 sines of wavelengths length/1 ... length/32, equal amplitudes, random phases.
+
+    ``amplitude`` is its root mean square over the domain. Band-limited, so that it is the same
+    surface on every grid that resolves length/32.
+    """
+
+    kind: Literal["noise"]
+    amplitude: NonNegative
+    seed: Annotated[int, Field(ge=0)]
+
+    def height(self, x: Array, scene: Scene) -> Array:
+        phases = np.random.default_rng(self.seed).uniform(0, 2 * np.pi, NOISE_WAVES)
+        waves = np.arange(1, NOISE_WAVES + 1)
+        angle = np.multiply.outer(x, 2 * np.pi * waves / scene.domain.length) + phases
+        return self.amplitude * np.sqrt(2 / NOISE_WAVES) * np.sin(angle).sum(axis=-1)
+
+
+class TableSurface(_Term):
+    """h from a CSV file with columns x,h: a cubic spline of the height above the repose line."""
+
+    kind: Literal["table"]
+    file: str
+    _spline: CubicSpline | None = PrivateAttr(default=None)
+    _tilt: float = PrivateAttr(default=0.0)
+
+    def load(self, key: str, folder: Path, scene: Scene, tilt: float) -> None:
+        x, h = read_table(key, folder / self.file, "h", scene)
+        self._tilt = tilt
+        self._spline = spline(x, h + tilt * x, scene)
+
+    def height(self, x: Array, scene: Scene) -> Array:
+        assert self._spline is not None
+        return np.asarray(self._spline(x)) - self._tilt * x
+
+
+class Gaussian(_Term):
+    """R = amplitude exp(-((x - centre)/width)^2), the nearest image where ends are periodic."""
+
+    kind: Literal["gaussian"]
+    amplitude: NonNegative
+    centre: Finite
+    width: Positive
+
+    def layer(self, x: Array, scene: Scene) -> Array:
+        distance = x - self.centre
+        if scene.domain.ends == "periodic":
+            length = scene.domain.length
+            distance = (distance + length / 2) % length - length / 2
+        return self.amplitude * np.exp(-((distance / self.width) ** 2))
+
+
+class Uniform(_Term):
+    """R = amplitude everywhere."""
+
+    kind: Literal["uniform"]
+    amplitude: NonNegative
+
+    def layer(self, x: Array, scene: Scene) -> Array:
+        return np.full_like(x, self.amplitude)
+
+
+class TableRolling(_Term):
+    """R from a CSV file with columns x,R: a cubic spline, cut off at zero between its points."""
+
+    kind: Literal["table"]
+    file: str
+    _spline: CubicSpline | None = PrivateAttr(default=None)
+
+    def load(self, key: str, folder: Path, scene: Scene) -> None:
+        x, R = read_table(key, folder / self.file, "R", scene)
+        if (R < 0).any():
+            row = int(np.argmax(R < 0))
+            raise ProfileError(
+                f"{key}.file = {self.file!r}: R = {R[row]!r} at x = {x[row]!r}: must be >= 0"
+            )
+        self._spline = spline(x, R, scene)
+
+    def layer(self, x: Array, scene: Scene) -> Array:
+        assert self._spline is not None
+        return np.maximum(self._spline(x), 0.0)
+
+
+SurfaceTerm = Annotated[Incline | Sine | Noise | TableSurface, Field(discriminator="kind")]
+RollingTerm = Annotated[Gaussian | Uniform | TableRolling, Field(discriminator="kind")]
+
+
+def read_table(key: str, path: Path, column: str, scene: Scene) -> tuple[Array, Array]:
+    """The columns x and ``column`` of a CSV file; x must ascend and span the cell centres."""
+    import pandas as pd
+
+    def refuse(why: str) -> ProfileError:
+        return ProfileError(f"{key}.file = {path.name!r}: {why}")
+
+    if not path.is_file():
+        raise refuse("no such file; must be a CSV file, its path relative to the scene file")
+    try:
+        table = pd.read_csv(path, dtype=str)
+    except (ValueError, OSError) as error:
+        raise refuse(f"must be a CSV file: {' '.join(str(error).split())[:120]}") from None
+    if not {"x", column} <= set(table.columns):
+        raise refuse(f"has columns {', '.join(map(str, table.columns))}; must have x,{column}")
+    try:
+        x, values = (table[name].to_numpy(dtype=float) for name in ("x", column))
+    except (ValueError, TypeError):
+        raise refuse(f"x and {column} must be numbers") from None
+    if x.size < 4:
+        raise refuse(f"has {x.size} rows; must have at least 4")
+    if not (np.isfinite(x).all() and np.isfinite(values).all()):
+        raise refuse(f"x and {column} must be finite numbers in every row")
+    if not (np.diff(x) > 0).all():
+        row = int(np.argmax(~(np.diff(x) > 0))) + 1
+        raise refuse(f"x = {x[row]!r} in row {row + 1}: x must ascend")
+    half = scene.d / 2 * (1 + 1e-9)
+    if x[0] > half or x[-1] < scene.domain.length - half:
+        raise refuse(
+            f"x runs from {x[0]:.6g} to {x[-1]:.6g}; must span the cell centres, "
+            f"{scene.d / 2:.6g} to {scene.domain.length - scene.d / 2:.6g}"
+        )
+    return x, values
+
+
+def spline(x: Array, values: Array, scene: Scene) -> CubicSpline:
+    """Cubic spline through the table, closed over the period where ends are periodic."""
+    if scene.domain.ends == "open":
+        return CubicSpline(x, values)
+    length = scene.domain.length
+    inside = x < x[0] + length * (1 - 1e-9)
+    around = np.append(x[inside], x[0] + length)
+    return CubicSpline(
+        around, np.append(values[inside], values[0]), bc_type="periodic", extrapolate="periodic"
+    )

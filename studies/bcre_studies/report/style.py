@@ -1,0 +1,67 @@
+"""How every figure looks: the models told apart by line style as well as colour, bytes stable."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+RC = {
+    "axes.axisbelow": True,
+    "axes.grid": True,
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "axes.titlesize": 9,
+    "font.size": 9,
+    "grid.alpha": 0.25,
+    "legend.frameon": False,
+    "lines.linewidth": 1.4,
+    "lines.markersize": 4.5,
+    "svg.hashsalt": "bcre",
+}
+
+Look = dict[str, Any]
+
+MODELS: dict[str, Look] = {
+    "ca": {"color": "#b5480f", "linestyle": "-"},
+    "pde": {"color": "#1f5a99", "linestyle": (0, (5, 2))},
+    "pde effective": {"color": "#3b8f5a", "linestyle": (0, (1, 1.2)), "linewidth": 2.2},
+}
+MARKERS: dict[str, str] = {"ca": "o", "pde": "s", "pde effective": "^"}
+LABELS = {
+    "ca": "automaton",
+    "pde": "BCRE (PDE)",
+    "pde effective": "BCRE with D_eff, kappa_eff",
+    "start": "start",
+}
+START: Look = {"color": "0.55", "linestyle": (0, (4, 2, 1, 2)), "linewidth": 1.0}
+
+
+def panels(rows: int, columns: int) -> tuple[Figure, list[Axes]]:
+    """A figure of so many panels, and its axes row by row."""
+    mpl.rcParams.update(RC)
+    figure = Figure(figsize=(4.1 * columns, 3.2 * rows + 0.4), layout="constrained")
+    axes = np.atleast_1d(figure.subplots(rows, columns))
+    return figure, list(axes.ravel())
+
+
+def legend(figure: Figure, models: Iterable[str], *, markers: bool = False) -> None:
+    """One legend below all panels that names the models."""
+    handles = []
+    for model in models:
+        look = START if model == "start" else MODELS[model]
+        marker = MARKERS.get(model, "") if markers else ""
+        handles.append(Line2D([], [], label=LABELS[model], marker=marker, **look))
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write an SVG whose bytes depend on the figure alone."""
+    with mpl.rc_context(RC):
+        figure.savefig(path, format="svg", metadata={"Date": None})

@@ -1,0 +1,171 @@
+"""Running a scene in either model, to the same kind of record."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+import pandas as pd
+
+import bcre_ca
+import bcre_pde
+from bcre_studies.profiles import Array
+from bcre_studies.scene import Scene
+
+Model = Literal["ca", "pde"]
+
+
+@dataclass(frozen=True)
+class Run:
+    """Layers of one model at the cell centres ``x`` (N,) and times ``t`` (T,): ``h``, ``R`` (T, N).
+
+    ``outflow`` (T,) is the area that has left through the foot; ``error`` the PDE's estimate of its
+    own error in R at the end (mean absolute value), where one was made.
+    """
+
+    model: Model
+    scene: Scene
+    x: Array
+    t: Array
+    h: Array
+    R: Array
+    outflow: Array
+    steps: int
+    wall_s: float
+    error: float | None = None
+
+    @property
+    def d(self) -> float:
+        """Cell length of this run's own grid."""
+        return self.scene.domain.length / self.x.size
+
+    @property
+    def u(self) -> Array:
+        """Height above the repose line, h + Sc x."""
+        return self.h + self.scene.material.Sc * self.x
+
+    def mass(self) -> Array:
+        """Area of sand in the domain at every time."""
+        rows = zip(self.h, self.R, strict=True)
+        return np.array([self.d * (math.fsum(h) + math.fsum(R)) for h, R in rows])
+
+    def mass_error(self) -> float:
+        """|mass + outflow - initial mass| at the end, relative to the area of |h| + R at the start."""
+        mass = self.mass()
+        scale = self.d * float(np.sum(np.abs(self.h[0]) + self.R[0]))
+        balance = abs(mass[-1] + self.outflow[-1] - mass[0])
+        return float(balance / scale) if scale > 0 else float(balance)
+
+
+def frame_times(scene: Scene, frames: int) -> list[float]:
+    """``frames`` equally spaced times from 0 to the end of the scene."""
+    return [float(t) for t in np.linspace(0.0, scene.time.until, frames)]
+
+
+def profiles(run: Run, **labels: str) -> pd.DataFrame:
+    """The layers as rows of x, h and R at every time, with constant label columns before them."""
+    frames, cells = run.h.shape
+    columns = {
+        "t": np.repeat(run.t, cells),
+        "x": np.tile(run.x, frames),
+        "h": run.h.ravel(),
+        "R": run.R.ravel(),
+    }
+    return pd.DataFrame({**labels, **columns})
+
+
+def rule_of(scene: Scene) -> bcre_ca.Rule:
+    """The scene's automaton; where the scene's step is "auto", with its largest step at the start."""
+    material = scene.material
+    rule = bcre_ca.Rule(material.v, material.D, material.gamma, material.Sc, scene.d, dt=1.0)
+    if scene.time.step != "auto":
+        return replace(rule, dt=scene.time.step)
+    pile = bcre_ca.Pile(*scene.initial(scene.centres()))
+    bound = bcre_ca.largest_stable_step(pile, rule, scene.domain.ends)
+    return replace(rule, dt=min(bcre_ca.MARGIN * bound, scene.time.until))
+
+
+def run_automaton(
+    scene: Scene, times: Sequence[float], stop: Callable[[Run], bool] | None = None
+) -> Run:
+    """The scene in the automaton, recorded at the given ascending times.
+
+    Raises
+    ------
+    bcre_ca.UnstableStep
+        where the scene's step cannot be stable.
+    """
+    h, R = scene.initial(scene.centres())
+    piles: list[bcre_ca.Pile] = []
+    began = time.perf_counter()
+    step = scene.time.step
+    for pile in bcre_ca.frames(
+        bcre_ca.Pile(h, R), rule_of(scene), list(times), scene.domain.ends, step
+    ):
+        piles.append(pile)
+        if stop is not None and stop(_record(scene, piles, 0.0)):
+            break
+    return _record(scene, piles, time.perf_counter() - began)
+
+
+def _record(scene: Scene, piles: list[bcre_ca.Pile], wall_s: float) -> Run:
+    return Run(
+        model="ca",
+        scene=scene,
+        x=scene.centres(),
+        t=np.array([pile.t for pile in piles]),
+        h=np.array([pile.h for pile in piles]),
+        R=np.array([pile.R for pile in piles]),
+        outflow=np.array([pile.outflow for pile in piles]),
+        steps=piles[-1].steps,
+        wall_s=wall_s,
+    )
+
+
+def problem_of(
+    scene: Scene, D: float | None = None, kappa: float | None = None
+) -> bcre_pde.Problem:
+    """The scene as an initial value problem of BCRE, with D or kappa replaced where given."""
+    material = scene.material
+    return bcre_pde.Problem(
+        initial=scene.initial,
+        material=bcre_pde.Material(
+            v=material.v,
+            D=material.D if D is None else D,
+            gamma=material.gamma,
+            Sc=material.Sc,
+            kappa=material.kappa if kappa is None else kappa,
+        ),
+        length=scene.domain.length,
+        ends=scene.domain.ends,
+    )
+
+
+def effective_problem_of(scene: Scene, with_curvature: bool = True) -> bcre_pde.Problem:
+    """BCRE with the automaton's own D_eff, and its kappa_eff unless left out.
+
+    The automaton's modified equation (``bcre_ca.theory``) tells what its cells and steps add.
+    """
+    rule = rule_of(scene)
+    kappa = scene.material.kappa + (rule.effective_curvature() if with_curvature else 0.0)
+    return problem_of(scene, D=rule.effective_diffusion(), kappa=kappa)
+
+
+def as_run(scene: Scene, solution: bcre_pde.Solution, error: float | None = None) -> Run:
+    """A solution of BCRE as the record of the scene."""
+    return Run(
+        model="pde",
+        scene=scene,
+        x=solution.x,
+        t=solution.t,
+        h=solution.h,
+        R=solution.R,
+        outflow=solution.outflow,
+        steps=solution.steps,
+        wall_s=solution.wall_s,
+        error=error,
+    )
