@@ -1,4 +1,4 @@
-"""Running the automaton: exact numbers of steps, chosen times, and a step that follows the bounds."""
+"""Running the automaton: so many steps, to chosen times, or with a step that follows its bounds."""
 
 from __future__ import annotations
 
@@ -131,7 +131,14 @@ def _reach(pile: Pile, rule: Rule, time: float, ends: Ends) -> Pile:
     steps = math.ceil(span / rule.dt * (1 - 1e-12))
     if steps <= 0:
         return replace(pile, t=time)
-    end = advance(pile, replace(rule, dt=span / steps), steps, ends)
+    rule = replace(rule, dt=span / steps)
+    end = advance(pile, rule, steps, ends)
+    try:
+        require_stable(end, rule, ends)
+    except UnstableStep as outgrown:
+        raise FloatingPointError(
+            f"the avalanche outgrew the step by t = {time:.6g}: {outgrown}"
+        ) from None
     return replace(end, t=time)
 
 
@@ -169,7 +176,7 @@ def _layers(h: ArrayLike, R: ArrayLike) -> tuple[Array, Array]:
     static, rolling = np.array(h, dtype=float), np.array(R, dtype=float)
     if static.ndim != 1 or static.shape != rolling.shape or not static.size:
         raise ValueError(
-            f"h has shape {static.shape}, R {rolling.shape}: must be equal, one-dimensional, not empty"
+            f"h has shape {static.shape}, R {rolling.shape}: must be equal, (N,) with N >= 1"
         )
     if not (np.isfinite(static).all() and np.isfinite(rolling).all()):
         raise ValueError("h and R must be finite")

@@ -1,11 +1,11 @@
 r"""Closed forms of the synchronous automaton: what the rule does, with pencil and paper.
 
-On a frozen slope S, with sigma = gamma (S - Sc), a rolling layer R = z^(-i) is multiplied per step by
+On a frozen slope S, with sigma = gamma (S - Sc), one step multiplies a rolling layer R = z^(-i) by
 
     G(z) = 1 + dt sigma - (v dt/d)(1 - z) + (D dt/d^2)(z - 2 + 1/z)
 
 (insert it into the rule with h(i) - h(i+1) = S d). z = e^(-j k d) is a Fourier mode of wavenumber
-k, z = e^(-m d) a profile that grows like e^(m x) downhill, i.e. decays uphill at rate m. All else here follows from G.
+k, and z = e^(-m d) a profile e^(m x), the uphill edge of a layer. All else here follows from G.
 """
 
 from __future__ import annotations

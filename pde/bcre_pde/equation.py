@@ -52,7 +52,7 @@ class Material:
                 raise ValueError(f"{name} = {value!r}: must be a finite number >= 0")
 
 
-class BCRE(PDEBase):
+class BCRE(PDEBase):  # type: ignore[misc]
     """BCRE on a line; the state holds the fields u, R and "ends".
 
     The third field serves open ends: its first cell is u on the foot, its last one the outflow so
@@ -112,8 +112,8 @@ class BCRE(PDEBase):
     def largest_explicit_step(self, largest_R: float) -> float:
         """Step at which an explicit Runge-Kutta method of order 4 is still stable.
 
-        The spectra of the stencils on the negative real axis reach 32/15 for the drift v/dx and for the
-        climb gamma R/dx, and 272/45 for the spreads D/dx^2 and kappa R/dx^2; the method reaches 2.78.
+        On the negative real axis the spectra of the stencils reach 32/15 for the drift v/dx and the
+        climb gamma R/dx, 272/45 for the spreads D/dx^2 and kappa R/dx^2, and the method 2.78.
         """
         material, dx = self.material, self.dx
         drift = max(material.v, material.gamma * largest_R)

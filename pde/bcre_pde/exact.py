@@ -1,7 +1,7 @@
 r"""Exact solutions of the full, nonlinear equations.
 
-With D = kappa = 0 the system u_t = gamma R u_x, R_t + v R_x = -gamma R u_x has two invariants: by the
-first equation u is carried uphill at gamma R, and from both together
+With D = kappa = 0 the system is u_t = gamma R u_x, R_t + v R_x = -gamma R u_x: the first equation
+carries u uphill at gamma R, and from both together
 
     w = R + u + (v/gamma) ln R        obeys        w_t + v w_x = 0,
 

@@ -1,7 +1,7 @@
 r"""How wrong a solution is: grid refinement and the grid convergence index.
 
-On three grids, each ``ratio`` times finer than the one before, a measured quantity f gives the observed order
-p = ln(|f3 - f2|/|f2 - f1|)/ln(ratio) and the error estimate of the finest
+On three grids, each ``ratio`` times finer than the one before, a measured quantity f gives the
+observed order p = ln(|f3 - f2|/|f2 - f1|)/ln(ratio) and the error estimate of the finest
 
     GCI = Fs |f2 - f1|/(ratio^p - 1),   Fs = 1.25
 
@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 SAFETY = 1.25
 FORMAL_ORDER = 5.0
 LEAST_ORDER = 0.5
-"""Below this observed order the grids do not converge; the estimate then takes the larger change."""
+"""Below this observed order the grids do not converge; the larger change is then what counts."""
 
 
 class GridConvergence(NamedTuple):

@@ -34,7 +34,7 @@ def growth_rate_at_a_fixed_place(v: float, D: float, sigma: float) -> float:
 
 
 def uphill_front_speed(v: float, D: float, sigma: float) -> float:
-    """2 sqrt(D sigma) - v for sigma > 0: how fast the uphill edge of R climbs; negative below Sd."""
+    """2 sqrt(D sigma) - v, sigma > 0: how fast the uphill edge of R climbs; negative below Sd."""
     if not sigma > 0:
         raise ValueError(f"sigma = {sigma!r}: a front needs growth, gamma (S - Sc) > 0")
     return 2 * math.sqrt(D * sigma) - v
@@ -65,8 +65,8 @@ def surface_mode_rate(gamma: float, kappa: float, R0: float, wavenumber: float) 
 def scarp_speed(v: float, gamma: float, H: float) -> float:
     """c = gamma H - v: climb of a sharp scarp, H the jump of u across it.
 
-    Ahead of the scarp R = 0, behind it R* and u lower by H. Mass: the eroded c H equals the growth c R*
-    of the rolling layer plus what it carries away, v R*; the climb is c = gamma R*. So
+    Ahead of the scarp R = 0, behind it R* and u lower by H. Mass: the eroded c H equals the growth
+    c R* of the rolling layer plus what it carries away, v R*; the climb is c = gamma R*. So
     R* = H - v/gamma.
     """
     return gamma * H - v

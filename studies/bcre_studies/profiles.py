@@ -52,7 +52,7 @@ class Sine(_Term):
     wavelength: Positive
 
     def height(self, x: Array, scene: Scene) -> Array:
-        return self.amplitude * np.sin(2 * np.pi * x / self.wavelength)
+        return np.asarray(self.amplitude * np.sin(2 * np.pi * x / self.wavelength))
 
 
 class Noise(_Term):
@@ -70,7 +70,7 @@ class Noise(_Term):
         phases = np.random.default_rng(self.seed).uniform(0, 2 * np.pi, NOISE_WAVES)
         waves = np.arange(1, NOISE_WAVES + 1)
         angle = np.multiply.outer(x, 2 * np.pi * waves / scene.domain.length) + phases
-        return self.amplitude * np.sqrt(2 / NOISE_WAVES) * np.sin(angle).sum(axis=-1)
+        return np.asarray(self.amplitude * np.sqrt(2 / NOISE_WAVES) * np.sin(angle).sum(axis=-1))
 
 
 class TableSurface(_Term):
@@ -104,7 +104,7 @@ class Gaussian(_Term):
         if scene.domain.ends == "periodic":
             length = scene.domain.length
             distance = (distance + length / 2) % length - length / 2
-        return self.amplitude * np.exp(-((distance / self.width) ** 2))
+        return np.asarray(self.amplitude * np.exp(-((distance / self.width) ** 2)))
 
 
 class Uniform(_Term):
@@ -135,7 +135,7 @@ class TableRolling(_Term):
 
     def layer(self, x: Array, scene: Scene) -> Array:
         assert self._spline is not None
-        return np.maximum(self._spline(x), 0.0)
+        return np.asarray(np.maximum(self._spline(x), 0.0))
 
 
 SurfaceTerm = Annotated[Incline | Sine | Noise | TableSurface, Field(discriminator="kind")]

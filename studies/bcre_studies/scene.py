@@ -1,7 +1,7 @@
 """A scene: one physical situation, described once and run in both models.
 
-Scenes are TOML files (built-in ones in ``scenes/``); lengths and times are in one consistent unit, x
-runs downhill. What a file may say is what the models below allow, and everything else is
+Scenes are TOML files (built-in ones in ``scenes/``); lengths and times are in one consistent unit,
+x runs downhill. What a file may say is what the models below allow, and everything else is
 refused with a line that names the key, the value and what is allowed.
 """
 
@@ -19,6 +19,7 @@ from bcre_studies.profiles import (
     Array,
     ProfileError,
     RollingTerm,
+    Sine,
     SurfaceTerm,
     TableRolling,
     TableSurface,
@@ -98,7 +99,9 @@ class Scene(_Table):
         if self.domain.ends == "open":
             return self
         for index, term in enumerate(self.surface):
-            waves = self.domain.length / term.wavelength if term.kind == "sine" else 1.0
+            if not isinstance(term, Sine):
+                continue
+            waves = self.domain.length / term.wavelength
             if abs(waves - round(waves)) > 1e-9 or round(waves) < 1:
                 raise ValueError(
                     f"surface.{index}.wavelength = {term.wavelength!r}: with periodic ends a whole "
@@ -107,7 +110,7 @@ class Scene(_Table):
         has_table = any(term.kind == "table" for term in self.surface)
         if not has_table and abs(self._untilted()) > 1e-12 * max(self.material.Sc, 1):
             raise ValueError(
-                f"surface: the inclines add up to a slope of {self.material.Sc - self._untilted()!r}; "
+                f"surface: the inclines add up to {self.material.Sc - self._untilted()!r}; "
                 f"with periodic ends it must be material.Sc = {self.material.Sc!r}"
             )
         return self
@@ -125,7 +128,7 @@ class Scene(_Table):
     def centres(self, cells: int | None = None) -> Array:
         """Cell centres of the automaton, or of another grid on the same domain."""
         count = cells or self.domain.cells
-        return (np.arange(count) + 0.5) * (self.domain.length / count)
+        return np.asarray((np.arange(count) + 0.5) * (self.domain.length / count))
 
     def initial(self, x: Array) -> tuple[Array, Array]:
         """h and R at positions x at t = 0, the same functions for every grid and model."""
@@ -137,7 +140,7 @@ class Scene(_Table):
         return h, R
 
     def with_changes(self, **changes: Any) -> Scene:
-        """A copy with values replaced: ``with_changes(v=0.2, cells=200, **{"rolling.0.width": 1.0})``."""
+        """A copy with values replaced: ``with_changes(v=0.2, **{"rolling.0.width": 1.0})``."""
         return override(self, changes)
 
 
@@ -187,7 +190,7 @@ SECTIONS: dict[str, type[_Table]] = {
 
 
 def _assign(data: dict[str, Any], key: str, value: Any) -> None:
-    """Set ``material.v``, ``rolling.0.width`` or a bare ``v``; the first section that has it wins."""
+    """Set ``material.v``, ``rolling.0.width`` or a bare ``v``; the first section with it wins."""
     parts = key.split(".")
     if len(parts) == 1 and key != "title":
         section = next(
@@ -198,7 +201,8 @@ def _assign(data: dict[str, Any], key: str, value: Any) -> None:
                 field for model in SECTIONS.values() for field in model.model_fields
             )
             raise SceneError(
-                f"{key} = {value!r}: no such key; allowed are {', '.join(allowed)}, or a path such as rolling.0.width"
+                f"{key} = {value!r}: no such key; allowed are {', '.join(allowed)}, "
+                "or a path such as rolling.0.width"
             )
         parts = [section, key]
     place: Any = data

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-RC = {
+RC: Any = {
     "axes.axisbelow": True,
     "axes.grid": True,
     "axes.spines.right": False,
@@ -37,7 +37,7 @@ MARKERS: dict[str, str] = {"ca": "o", "pde": "s", "pde effective": "^"}
 LABELS = {
     "ca": "automaton",
     "pde": "BCRE (PDE)",
-    "pde effective": "BCRE with D_eff, kappa_eff",
+    "pde effective": r"BCRE with $D_\mathrm{eff}$, $\kappa_\mathrm{eff}$",
     "start": "start",
 }
 START: Look = {"color": "0.55", "linestyle": (0, (4, 2, 1, 2)), "linewidth": 1.0}

@@ -1,0 +1,36 @@
+.DEFAULT_GOAL := help
+SHELL := /bin/sh
+PYTHON ?= python3
+BIN := .venv/bin
+
+.PHONY: help install reports test check lint clean
+
+help: ## list the targets
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-9s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+install: .venv/installed ## create .venv with the locked dependencies
+
+.venv/installed: requirements.lock pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo 'Python 3.11 or newer is needed: make PYTHON=python3.11' >&2; exit 2; }
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --require-hashes -r requirements.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	@touch $@
+
+reports: install ## run all studies, write reports/
+	$(BIN)/bcre report
+
+test: install ## run the tests
+	$(BIN)/python -m pytest
+
+check: install ## judge all claims again; fails where a verdict differs from reports/verdicts.csv
+	$(BIN)/bcre check
+
+lint: install ## ruff and mypy
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+clean: ## remove the environment, caches and everything that is built
+	rm -rf .venv .cache .mypy_cache .pytest_cache .ruff_cache .hypothesis out reports/local
+	find ca pde studies tests -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,0 +1,141 @@
+"""The command ``bcre``. Heavy modules are imported when a command needs them."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Literal
+
+import click
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+def app() -> None:
+    """Does a two-layer cellular automaton of sandpiles do what the BCRE equations do?"""
+
+
+@app.command("list")
+def list_all() -> None:
+    """List the built-in scenes and the studies."""
+    from bcre_studies.catalog import STUDIES, study
+    from bcre_studies.scene import built_in_names, load
+
+    click.echo("Scenes (bcre run SCENE):")
+    for name in built_in_names():
+        click.echo(f"  {name:24}{load(name).title}")
+    click.echo("Studies (bcre study NAME):")
+    for name in STUDIES:
+        click.echo(f"  {name:24}{study(name).TITLE}")
+
+
+@app.command()
+@click.argument("scene")
+@click.option(
+    "--model", type=click.Choice(["ca", "pde", "both"]), default="both", show_default=True
+)
+@click.option(
+    "--set",
+    "assignments",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Override a value, e.g. v=0.2 or rolling.0.width=1; may be repeated.",
+)
+@click.option(
+    "--frames",
+    type=click.IntRange(min=2),
+    default=11,
+    show_default=True,
+    help="Frames, from t = 0 to the end.",
+)
+@click.option(
+    "--out", type=click.Path(file_okay=False, path_type=Path), help="Folder  [default: out/SCENE]"
+)
+def run(
+    scene: str,
+    model: Literal["ca", "pde", "both"],
+    assignments: tuple[str, ...],
+    frames: int,
+    out: Path | None,
+) -> None:
+    """Run SCENE, a built-in name or a TOML file; write profiles.csv and summary.json."""
+    from bcre_studies.run import run_scene, write_run
+    from bcre_studies.scene import load
+
+    folder = out or Path("out") / Path(scene).stem
+    summary = write_run(run_scene(load(scene, assignments), model, frames), folder)
+    for name, numbers in summary.items():
+        facts = ", ".join(f"{key} {_short(value)}" for key, value in numbers.items())
+        click.echo(f"{name}: {facts}")
+    click.echo(f"wrote {folder / 'profiles.csv'} and {folder / 'summary.json'}")
+
+
+@app.command("study")
+@click.argument("names", nargs=-1, required=True, metavar="NAME...")
+def run_studies(names: tuple[str, ...]) -> None:
+    """Run studies (see bcre list), write their reports and print their conclusions."""
+    from bcre_studies.catalog import STUDIES
+
+    for name in names:
+        if name not in STUDIES:
+            allowed = ", ".join(STUDIES)
+            raise click.UsageError(f"NAME = {name!r}: must be one of {allowed}")
+    from bcre_studies.report.write import find, write_study
+
+    for name in names:
+        finding = find(name)
+        write_study(finding)
+        for claim in finding.claims:
+            click.echo(f"{name}: {claim.statement} {claim.verdict}: {claim.evidence}.")
+
+
+@app.command()
+def report() -> None:
+    """Run all studies and write reports/ with its index."""
+    from bcre_studies.report.files import REPORTS
+    from bcre_studies.report.write import write_all
+
+    claims = [claim for finding in write_all() for claim in finding.claims]
+    click.echo(f"{len(claims)} claims judged; read {REPORTS / 'README.md'}")
+
+
+@app.command()
+def check() -> None:
+    """Judge all claims again; exit 1 where a verdict differs from the recorded one."""
+    from bcre_studies.catalog import STUDIES
+    from bcre_studies.report.write import find, recorded_verdicts, verdict_table
+
+    verdicts = verdict_table([find(name) for name in STUDIES])
+    both = verdicts.merge(
+        recorded_verdicts(), how="outer", on=["study", "claim"], suffixes=("", "_recorded")
+    ).fillna("(none)")
+    differs = both["verdict"] != both["verdict_recorded"]
+    for row, differing in zip(both.itertuples(), differs, strict=True):
+        recorded = f", recorded as: {row.verdict_recorded}" if differing else ""
+        click.echo(f"{row.study}: {row.claim}: {row.verdict}{recorded}")
+    click.echo(f"{len(both)} claims, {differs.sum()} differ from reports/verdicts.csv")
+    if differs.any():
+        sys.exit(1)
+
+
+def _short(value: object) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def main() -> None:
+    """Run the command; bad input ends in one line on standard error and exit 2."""
+    try:
+        app(standalone_mode=False)
+    except click.exceptions.NoArgsIsHelpError as error:
+        click.echo(error.format_message())
+    except click.ClickException as error:
+        _refuse(error.format_message())
+    except (click.Abort, KeyboardInterrupt):
+        click.echo("bcre: interrupted; what was finished before is kept", err=True)
+        sys.exit(130)
+    except (ValueError, OSError) as error:
+        _refuse(str(error))
+
+
+def _refuse(message: str) -> None:
+    click.echo(f"bcre: {' '.join(message.split())}", err=True)
+    sys.exit(2)

@@ -1,0 +1,121 @@
+"""Writing the reports: per study CSV tables, an SVG and a page; the index with the verdicts."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import jinja2
+import pandas as pd
+
+from bcre_studies.catalog import STUDIES, study
+from bcre_studies.claim import Claim, Verdict
+from bcre_studies.report import style
+from bcre_studies.report.files import REPORTS, replace_file, replace_text
+from bcre_studies.report.store import Tables, tables_of
+
+VERDICTS = REPORTS / "verdicts.csv"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A study with what it measured and concluded."""
+
+    name: str
+    title: str
+    text: str
+    tables: Tables
+    claims: list[Claim]
+
+    @property
+    def comparison(self) -> str:
+        """The comparison as a Markdown table."""
+        return markdown(self.tables["comparison"])
+
+    @property
+    def comparison_html(self) -> str:
+        """The comparison as an HTML table, its texts escaped."""
+        return str(readable(self.tables["comparison"]).to_html(index=False, border=0))
+
+
+def find(name: str) -> Finding:
+    """Run a study, or take its stored tables, and judge it."""
+    module, tables = study(name), tables_of(name)
+    text = inspect.cleandoc(module.__doc__ or "")
+    return Finding(name, module.TITLE, text, tables, module.judge(tables))
+
+
+def write_study(finding: Finding) -> None:
+    """Write ``reports/<study>/``: its tables, its figure and its page."""
+    folder = REPORTS / finding.name
+    for key, table in finding.tables.items():
+        replace_text(folder / f"{key}.csv", table.to_csv(index=False, lineterminator="\n"))
+    figure = study(finding.name).draw(finding.tables)
+    replace_file(folder / "figure.svg", lambda path: style.save(figure, path))
+    replace_text(folder / "README.md", _render("study.md.j2", finding=finding))
+
+
+def write_index(findings: Sequence[Finding]) -> None:
+    """Write the index as Markdown and as a page, and record the verdicts."""
+    replace_text(VERDICTS, verdict_table(findings).to_csv(index=False, lineterminator="\n"))
+    for name in ("README.md", "index.html"):
+        text = _render(f"{name}.j2", findings=findings, verdicts=list(Verdict))
+        replace_text(REPORTS / name, text)
+
+
+def write_all() -> list[Finding]:
+    """``bcre report``: every study and the index."""
+    findings = []
+    for name in STUDIES:
+        findings.append(find(name))
+        write_study(findings[-1])
+    write_index(findings)
+    return findings
+
+
+def verdict_table(findings: Sequence[Finding]) -> pd.DataFrame:
+    """Study, claim and verdict, one row a claim."""
+    return pd.DataFrame(
+        [
+            {"study": finding.name, "claim": claim.name, "verdict": str(claim.verdict)}
+            for finding in findings
+            for claim in finding.claims
+        ]
+    )
+
+
+def recorded_verdicts() -> pd.DataFrame:
+    """The verdicts that the repository records."""
+    return pd.read_csv(VERDICTS)
+
+
+def readable(table: pd.DataFrame) -> pd.DataFrame:
+    """Numbers as short text, empty where there is none, spaces for underscores in the heads."""
+    shown = table.map(_cell)
+    return shown.rename(columns=lambda name: str(name).replace("_", " "))
+
+
+def markdown(table: pd.DataFrame) -> str:
+    """A Markdown table."""
+    text = readable(table).to_markdown(index=False, disable_numparse=True)
+    return str(text)
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, float):
+        return "" if pd.isna(value) else f"{value:.6g}"
+    return "" if value is None else str(value)
+
+
+def _render(template: str, **content: object) -> str:
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
+        autoescape=jinja2.select_autoescape(["html.j2"]),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    return environment.get_template(template).render(**content)

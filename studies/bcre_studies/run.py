@@ -1,0 +1,129 @@
+"""``bcre run``: one scene, one or both models, the profiles and a summary as files."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+import pandas as pd
+from rich.console import Console
+from rich.progress import Progress
+
+import bcre_ca
+import bcre_pde
+from bcre_studies.compare import SHARE, sample
+from bcre_studies.profiles import Array
+from bcre_studies.report.files import replace_text
+from bcre_studies.scene import Scene, SceneError
+from bcre_studies.simulate import Run, as_run, frame_times, problem_of, profiles, run_automaton
+
+ALONE = 1e-3
+"""Relative error that the PDE is refined to where there is no automaton to compare it with."""
+
+FINEST = 1600
+
+
+def run_scene(scene: Scene, model: Literal["ca", "pde", "both"], frames: int) -> list[Run]:
+    """The scene in the models asked for, recorded at equally spaced times from 0 to its end.
+
+    Raises
+    ------
+    SceneError
+        where the scene's step is not stable, or not for as long as the scene lasts.
+    """
+    times = frame_times(scene, frames)
+    runs = []
+    if model in ("ca", "both"):
+        try:
+            runs.append(run_automaton(scene, times))
+        except (bcre_ca.UnstableStep, FloatingPointError) as failure:
+            step = scene.time.step
+            raise SceneError(f"time.step = {step!r}: {failure}, or be 'auto'") from None
+    if model in ("pde", "both"):
+        runs.append(_run_pde(scene, times, runs[0] if runs else None))
+    return runs
+
+
+def _run_pde(scene: Scene, times: Sequence[float], automaton: Run | None) -> Run:
+    """BCRE on the scene's grid, or refined until its error in R is small.
+
+    Small is a tenth of the difference from the automaton, or a thousandth of R without one.
+    """
+    x = scene.centres()
+
+    def measure(solution: bcre_pde.Solution) -> Array:
+        return sample(as_run(scene, solution), x)
+
+    def allowed(R: Array) -> float:
+        relative = ALONE * float(np.mean(np.abs(R)))
+        if automaton is None:
+            return relative
+        return SHARE * max(float(np.mean(np.abs(R - automaton.R[-1]))), relative)
+
+    with Progress(console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task("BCRE", total=scene.time.until)
+
+        def show(solution: bcre_pde.Solution) -> bool:
+            cells = f"BCRE, {solution.x.size} cells"
+            progress.update(task, description=cells, completed=float(solution.t[-1]))
+            return False
+
+        refined = _refined(scene, times, measure, allowed, show)
+    return as_run(scene, refined.solution, refined.error)
+
+
+def _refined(
+    scene: Scene,
+    times: Sequence[float],
+    measure: Callable[[bcre_pde.Solution], Array],
+    allowed: Callable[[Array], float],
+    show: Callable[[bcre_pde.Solution], bool],
+) -> bcre_pde.Refined:
+    solver = scene.solver
+    finest = solver.cells or max(FINEST, 4 * scene.domain.cells)
+    coarsest = (
+        max(finest // 4, bcre_pde.SMALLEST_GRID) if solver.cells else max(scene.domain.cells, 100)
+    )
+    return bcre_pde.solve_refined(
+        problem_of(scene),
+        times,
+        measure,
+        (lambda _: 0.0) if solver.cells else allowed,
+        coarsest=coarsest,
+        finest=finest,
+        method=solver.method,
+        tolerance=solver.tolerance,
+        stop=show,
+    )
+
+
+def write_run(runs: Sequence[Run], folder: Path) -> dict[str, Any]:
+    """Write ``profiles.csv`` and ``summary.json``; return the summary."""
+    table = pd.concat([profiles(run, model=run.model) for run in runs], ignore_index=True)
+    summary: dict[str, Any] = {run.model: summarise(run) for run in runs}
+    replace_text(folder / "profiles.csv", table.to_csv(index=False, lineterminator="\n"))
+    replace_text(folder / "summary.json", json.dumps(summary, indent=2) + "\n")
+    return summary
+
+
+def summarise(run: Run) -> dict[str, Any]:
+    """What happened, in numbers: cells, steps, time taken, the balance of mass, the range of R."""
+    mass = run.mass()
+    summary: dict[str, Any] = {
+        "cells": run.x.size,
+        "steps": run.steps,
+        "wall_s": run.wall_s,
+        "mass_initial": float(mass[0]),
+        "mass_final": float(mass[-1]),
+        "outflow": float(run.outflow[-1]),
+        "mass_error": run.mass_error(),
+        "R_min": float(run.R.min()),
+        "R_max": float(run.R.max()),
+    }
+    if run.error is not None:
+        scale = float(np.mean(np.abs(run.R[-1])))
+        summary["error_estimate"] = run.error / scale if scale > 0 else run.error
+    return summary
