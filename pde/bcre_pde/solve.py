@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pde import CartesianGrid, FieldCollection
 from pde.solvers import RungeKuttaSolver, ScipySolver
+from scipy import sparse
 
 from bcre_pde.equation import BCRE, Material
 
@@ -185,7 +186,10 @@ def _advance(
         solver = partial(BoundedRungeKutta, dt_max=bound, tolerance=tolerance)
         first = min(bound, span[1] - span[0])
     else:
-        solver = partial(ScipySolver, method=method, rtol=tolerance, atol=tolerance * largest_R)
+        options: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * largest_R}
+        if method == "BDF":
+            options["jac_sparsity"] = _jacobian_pattern(state.grid.shape[0])
+        solver = partial(ScipySolver, method=method, **options)
         first = None
     counted = equation.evaluations
     try:
@@ -228,6 +232,13 @@ class BoundedRungeKutta(RungeKuttaSolver):  # type: ignore[misc]
             return new, error / _layer_scale(new[1])
 
         return relative_single_step
+
+
+def _jacobian_pattern(cells: int) -> sparse.csc_array:
+    """Which rates depend on which values: each field on all three, up to three cells away."""
+    offsets = [*range(-3, 4), *range(cells - 3, cells), *range(1 - cells, 4 - cells)]
+    near = sparse.diags_array([np.ones(cells - abs(offset)) for offset in offsets], offsets=offsets)
+    return sparse.kron(np.ones((3, 3)), near, format="csc")
 
 
 def _layer_scale(R: Array) -> float:

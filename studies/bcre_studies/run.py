@@ -23,6 +23,7 @@ from bcre_studies.simulate import Run, as_run, frame_times, problem_of, profiles
 ALONE = 1e-3
 """Relative error that the PDE is refined to where there is no automaton to compare it with."""
 
+COARSEST = 100
 FINEST = 1600
 
 
@@ -48,20 +49,21 @@ def run_scene(scene: Scene, model: Literal["ca", "pde", "both"], frames: int) ->
 
 
 def _run_pde(scene: Scene, times: Sequence[float], automaton: Run | None) -> Run:
-    """BCRE on the scene's grid, or refined until its error in R is small.
+    """BCRE on the scene's grid, or refined until its error in R, over all frames, is small.
 
     Small is a tenth of the difference from the automaton, or a thousandth of R without one.
     """
     x = scene.centres()
 
     def measure(solution: bcre_pde.Solution) -> Array:
-        return sample(as_run(scene, solution), x)
+        run = as_run(scene, solution)
+        return np.array([sample(run, x, frame=frame) for frame in range(run.t.size)])
 
     def allowed(R: Array) -> float:
         relative = ALONE * float(np.mean(np.abs(R)))
         if automaton is None:
             return relative
-        return SHARE * max(float(np.mean(np.abs(R - automaton.R[-1]))), relative)
+        return SHARE * max(float(np.mean(np.abs(R - automaton.R))), relative)
 
     with Progress(console=Console(stderr=True), transient=True) as progress:
         task = progress.add_task("BCRE", total=scene.time.until)
@@ -71,33 +73,41 @@ def _run_pde(scene: Scene, times: Sequence[float], automaton: Run | None) -> Run
             progress.update(task, description=cells, completed=float(solution.t[-1]))
             return False
 
-        refined = _refined(scene, times, measure, allowed, show)
+        options = {"method": scene.solver.method, "tolerance": scene.solver.tolerance, "stop": show}
+        if scene.solver.cells is not None:
+            return _on_given_grid(scene, scene.solver.cells, times, measure, options)
+        coarsest = max(scene.domain.cells, COARSEST)
+        refined = bcre_pde.solve_refined(
+            problem_of(scene),
+            times,
+            measure,
+            allowed,
+            coarsest=coarsest,
+            finest=max(FINEST, 4 * coarsest),
+            **options,
+        )
     return as_run(scene, refined.solution, refined.error)
 
 
-def _refined(
+def _on_given_grid(
     scene: Scene,
+    cells: int,
     times: Sequence[float],
     measure: Callable[[bcre_pde.Solution], Array],
-    allowed: Callable[[Array], float],
-    show: Callable[[bcre_pde.Solution], bool],
-) -> bcre_pde.Refined:
-    solver = scene.solver
-    finest = solver.cells or max(FINEST, 4 * scene.domain.cells)
-    coarsest = (
-        max(finest // 4, bcre_pde.SMALLEST_GRID) if solver.cells else max(scene.domain.cells, 100)
-    )
-    return bcre_pde.solve_refined(
-        problem_of(scene),
-        times,
-        measure,
-        (lambda _: 0.0) if solver.cells else allowed,
-        coarsest=coarsest,
-        finest=finest,
-        method=solver.method,
-        tolerance=solver.tolerance,
-        stop=show,
-    )
+    options: dict[str, Any],
+) -> Run:
+    """The solution on the scene's own PDE grid, its error from grids two and four times coarser."""
+    problem = problem_of(scene)
+    solutions = [
+        bcre_pde.solve(problem, times, grid, **options)
+        for grid in (cells, cells // 2, cells // 4)
+        if grid >= bcre_pde.SMALLEST_GRID
+    ]
+    error = None
+    if len(solutions) == 3:
+        fine, medium, coarse = map(measure, solutions)
+        error = bcre_pde.grid_convergence_index(fine, medium, coarse).error
+    return as_run(scene, solutions[0], error)
 
 
 def write_run(runs: Sequence[Run], folder: Path) -> dict[str, Any]:
@@ -124,6 +134,6 @@ def summarise(run: Run) -> dict[str, Any]:
         "R_max": float(run.R.max()),
     }
     if run.error is not None:
-        scale = float(np.mean(np.abs(run.R[-1])))
+        scale = float(np.mean(np.abs(run.R)))
         summary["error_estimate"] = run.error / scale if scale > 0 else run.error
     return summary

@@ -24,7 +24,7 @@ class Run:
     """Layers of one model at the cell centres ``x`` (N,) and times ``t`` (T,): ``h``, ``R`` (T, N).
 
     ``outflow`` (T,) is the area that has left through the foot; ``error`` the PDE's estimate of its
-    own error in R at the end (mean absolute value), where one was made.
+    own error in R (mean absolute value), where one was made.
     """
 
     model: Model
