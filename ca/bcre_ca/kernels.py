@@ -3,8 +3,8 @@
 In place works for the synchronous rule too: cell i needs the old cells i and i+1, which a sweep
 downhill has not touched yet, and the flux out of cell i-1, which is carried along. Expressions are
 those of ``step.py``, in the same order, without fused or reassociated arithmetic. The fluxes
-through the ends are taken before the loop and the views are sliced to start at 0, since either
-would otherwise keep the loop from being vectorised.
+through the ends are taken before the loop, and neighbours are read as ``h[i + 1]`` rather than
+through a shifted view, since the compiler would otherwise not vectorise the loop.
 
 Every kernel takes h and R of shape (N,), changes both, and returns what left through the foot.
 """
@@ -38,7 +38,6 @@ def march(h: Array, R: Array, rule: Rule, steps: int, ends: Ends) -> float:
 @numba.njit(cache=True)
 def _synchronous_open(h, R, c, b, q, k, s, drop, steps, periodic):  # type: ignore[no-untyped-def]
     last = h.size - 1
-    h_here, h_next, R_here, R_next = h[:last], h[1:], R[:last], R[1:]
     outflow = 0.0
     lost = 0.0
     for _ in range(steps):
@@ -46,11 +45,11 @@ def _synchronous_open(h, R, c, b, q, k, s, drop, steps, periodic):  # type: igno
         into_last = q * R[last - 1] - b * R[last] if last > 0 else 0.0
         flux_in = 0.0
         for i in range(last):
-            R_i = R_here[i]
-            flux_out = q * R_i - b * R_next[i]
-            exchange = k * R_i * ((h_here[i] - h_next[i]) - s)
-            h_here[i] = h_here[i] - exchange
-            R_here[i] = R_i + ((flux_in - flux_out) + exchange)
+            R_i = R[i]
+            flux_out = q * R_i - b * R[i + 1]
+            exchange = k * R_i * ((h[i] - h[i + 1]) - s)
+            h[i] = h[i] - exchange
+            R[i] = R_i + ((flux_in - flux_out) + exchange)
             flux_in = flux_out
         R[last] = R[last] + (into_last - foot)
         # Compensated, so that the balance of mass holds to rounding after any number of steps.
@@ -64,7 +63,6 @@ def _synchronous_open(h, R, c, b, q, k, s, drop, steps, periodic):  # type: igno
 @numba.njit(cache=True)
 def _synchronous_periodic(h, R, c, b, q, k, s, drop, steps, periodic):  # type: ignore[no-untyped-def]
     last = h.size - 1
-    h_here, h_next, R_here, R_next = h[:last], h[1:], R[:last], R[1:]
     for _ in range(steps):
         R_first, R_last, h_last = R[0], R[last], h[last]
         into_first = q * R_last - b * R_first
@@ -72,11 +70,11 @@ def _synchronous_periodic(h, R, c, b, q, k, s, drop, steps, periodic):  # type: 
         exchange_last = k * R_last * ((h_last - (h[0] - drop)) - s)
         flux_in = into_first
         for i in range(last):
-            R_i = R_here[i]
-            flux_out = q * R_i - b * R_next[i]
-            exchange = k * R_i * ((h_here[i] - h_next[i]) - s)
-            h_here[i] = h_here[i] - exchange
-            R_here[i] = R_i + ((flux_in - flux_out) + exchange)
+            R_i = R[i]
+            flux_out = q * R_i - b * R[i + 1]
+            exchange = k * R_i * ((h[i] - h[i + 1]) - s)
+            h[i] = h[i] - exchange
+            R[i] = R_i + ((flux_in - flux_out) + exchange)
             flux_in = flux_out
         h[last] = h_last - exchange_last
         R[last] = R_last + ((into_last - into_first) + exchange_last)
