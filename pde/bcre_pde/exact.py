@@ -1,63 +1,246 @@
-r"""Exact solutions of the full, nonlinear equations.
+r"""Exact solutions of the full, nonlinear equations, for verification.
 
-With D = kappa = 0 the system is u_t = gamma R u_x, R_t + v R_x = -gamma R u_x: the first equation
-carries u uphill at gamma R, and from both together
+Each is an :class:`ExactSolution`: a problem with the layers that it has at every time. Where a
+solution does not obey the ends of the domain, it holds in a ``window`` that their influence,
+travelling downhill at v and uphill at gamma R, has not reached.
 
-    w = R + u + (v/gamma) ln R        obeys        w_t + v w_x = 0,
+Written in u = h + Sc x the equations are, with D and kappa only where they are named,
 
-since w_t + v w_x = (R_t + v R_x) + u_t + v u_x + (v/(gamma R)) (R_t + v R_x)
-= -gamma R u_x + gamma R u_x + v u_x - v u_x = 0. Where w is the same everywhere it stays so, u is a
-function of R, and R_t = gamma R R_x follows: a wave that climbs and steepens.
+    u_t = -E        R_t + v R_x = D R_xx + E        E = -R (gamma u_x + kappa u_xx).
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import elementwise
 
+from bcre_pde.equation import Material
+from bcre_pde.solve import Ends, Problem
+
 Array = NDArray[np.float64]
+Profile = Callable[[Array], Array]
+
+
+MARGIN = 12.0
+"""Distance kept from where the influence of an end would stand without any numerical diffusion."""
+
+
+@dataclass(frozen=True)
+class ExactSolution:
+    """Layers known at every time.
+
+    Parameters
+    ----------
+    name: what it is called.
+    material, length, ends: the problem it solves.
+    until: a time up to which it is smooth and holds in the window.
+    layers: function of positions (N,) and a time, returning h and R there.
+    window: the part of the domain in which it holds until then.
+    floor: absolute error below which rounding, or what the solution leaves out, counts.
+    """
+
+    name: str
+    material: Material
+    length: float
+    ends: Ends
+    until: float
+    layers: Callable[[Array, float], tuple[Array, Array]]
+    window: tuple[float, float]
+    floor: float = 1e-12
+
+    @property
+    def problem(self) -> Problem:
+        """The initial value problem."""
+        return Problem(self._start, self.material, self.length, self.ends)
+
+    def _start(self, x: Array) -> tuple[Array, Array]:
+        return self.layers(x, 0.0)
+
+
+def rolling_mode(wavenumber: float, v: float, D: float, Sc: float = 0.5) -> ExactSolution:
+    """R = 1 + e^(-D k^2 t) sin(k (x - v t))/2 on the repose slope.
+
+    u is constant, so E = 0 and R obeys R_t + v R_x = D R_xx.
+    """
+
+    def layers(x: Array, t: float) -> tuple[Array, Array]:
+        decay = math.exp(-D * wavenumber**2 * t)
+        return -Sc * x, 1 + decay / 2 * np.sin(wavenumber * (x - v * t))
+
+    length = 2 * math.pi / wavenumber
+    until = 0.5 * length / v
+    material = Material(v, D, 0.5, Sc)
+    return ExactSolution("rolling mode", material, length, "periodic", until, layers, (0.0, length))
+
+
+def surface_mode(
+    wavenumber: float, gamma: float, kappa: float, v: float, Sc: float = 0.5
+) -> ExactSolution:
+    r"""u = a Im e^(lambda t + j k x), lambda = j gamma k - kappa k^2, under R = 1, for a small a.
+
+    To first order in a, u_t = gamma u_x + kappa u_xx, which lambda solves, and R_t + v R_x = -u_t,
+    hence R = 1 + a Im [lambda/(lambda + j k v) (e^(-j k v t) - e^(lambda t)) e^(j k x)]. The second
+    order, a^2 = 1e-14, is left out.
+    """
+    amplitude = 1e-7
+    rate = complex(-kappa * wavenumber**2, gamma * wavenumber)
+    share = rate / (rate + 1j * wavenumber * v)
+
+    def layers(x: Array, t: float) -> tuple[Array, Array]:
+        wave = amplitude * np.exp(1j * wavenumber * x)
+        carried = np.exp(-1j * wavenumber * v * t) - np.exp(rate * t)
+        return (wave * np.exp(rate * t)).imag - Sc * x, 1 + (wave * share * carried).imag
+
+    length = 2 * math.pi / wavenumber
+    material = Material(v, 0.0, gamma, Sc, kappa)
+    until = 0.5 * length / gamma
+    return ExactSolution(
+        "surface mode", material, length, "periodic", until, layers, (0.0, length), floor=2e-13
+    )
+
+
+def frozen_slope_release(
+    excess: float, v: float, D: float, gamma: float, Sc: float = 0.5
+) -> ExactSolution:
+    r"""R = M (4 pi D t)^(-1/2) exp(sigma t - (x - v t)^2/(4 D t)), sigma = gamma (S - Sc).
+
+    A layer of 1e-100 leaves the slope as it is: E = sigma R, and with R = e^(sigma t) r the
+    equation is the advection and diffusion of r from a point (Bouchaud et al. 1994). It starts here
+    at the age at which it is two lengths wide.
+    """
+    age, centre, length = 1.0 / D, 15.0, 60.0
+    sigma, M = gamma * excess, 1e-100
+
+    def layers(x: Array, t: float) -> tuple[Array, Array]:
+        spread = 4 * D * (t + age)
+        distance = x - centre - v * t
+        R = M / math.sqrt(math.pi * spread) * np.exp(sigma * t - distance**2 / spread)
+        return (Sc + excess) * (length - x), R
+
+    material = Material(v, D, gamma, Sc)
+    until = 15.0 / v
+    return ExactSolution(
+        "frozen slope", material, length, "open", until, layers, (8.0, 52.0), 1e-112
+    )
 
 
 def climbing_wave_surface(x: Array, R: Array, v: float, gamma: float, Sc: float) -> Array:
-    """h = -Sc x - R - (v/gamma) ln R, the surface under a climbing wave R > 0 (w = 0)."""
+    """h = -Sc x - R - (v/gamma) ln R, the surface under a climbing wave R > 0."""
     return -Sc * x - R - v / gamma * np.log(R)
 
 
-def climbing_wave(
-    x: Array,
-    t: float,
-    R0: Callable[[Array], Array],
-    gamma: float,
-    reach: float,
-) -> Array:
-    """R(x, t) = R0(x + gamma R t), solved for R at every x; D = kappa = 0.
+def climbing_wave(x: Array, t: float, R0: Profile, gamma: float, reach: float) -> Array:
+    r"""R(x, t) = R0(x + gamma R t), D = kappa = 0, solved for R at every x.
+
+    With D = kappa = 0 the quantity w = R + u + (v/gamma) ln R obeys w_t + v w_x = 0, since
+    w_t + v w_x = (R_t + v R_x)(1 + v/(gamma R)) + u_t + v u_x, where R_t + v R_x = -gamma R u_x and
+    u_t = gamma R u_x. Where w is the same everywhere it stays so, u is a function of R alone, and
+    R_t = gamma R R_x follows: a wave that climbs and steepens until :func:`breaking_time`.
 
     Parameters
     ----------
     x: positions, shape (N,).
-    t: a time before the wave breaks at t* = 1/(gamma max R0').
-    R0: the initial rolling layer as a function of position, > 0, on all positions reached.
+    t: a time before the wave breaks.
+    R0: the initial rolling layer, > 0, on all positions reached.
     reach: an upper bound of R0, a length.
     """
     if t == 0:
         return R0(x)
 
-    def excess(R: Array, place: Array) -> Array:
+    def gap(R: Array, place: Array) -> Array:
         return R - R0(place + gamma * R * t)
 
-    found = elementwise.find_root(
-        excess,
-        (np.zeros_like(x), np.full_like(x, reach * (1 + 1e-9))),
-        args=(x,),
-        tolerances={"xatol": 0.0, "xrtol": 4e-16},
+    return _root(gap, np.zeros_like(x), np.full_like(x, reach * (1 + 1e-9)), x)
+
+
+def climbing_hump(
+    v: float,
+    gamma: float,
+    height: float,
+    width: float,
+    length: float,
+    until: float,
+    Sc: float = 0.5,
+) -> ExactSolution:
+    """The climbing wave of R0 = 1 + height exp(-((x - length/2)/width)^2), periodic."""
+    R0 = partial(_hump, height=height, width=width, length=length)
+
+    def layers(x: Array, t: float) -> tuple[Array, Array]:
+        R = climbing_wave(x, t, R0, gamma, 1 + height)
+        return climbing_wave_surface(x, R, v, gamma, Sc), R
+
+    material = Material(v, 0.0, gamma, Sc)
+    return ExactSolution(
+        "climbing wave", material, length, "periodic", until, layers, (0.0, length)
     )
-    return np.asarray(found.x)
 
 
 def breaking_time(steepest_rise: float, gamma: float) -> float:
     """t* = 1/(gamma max R0'): when the climbing wave becomes vertical."""
     return 1 / (gamma * steepest_rise) if steepest_rise > 0 else math.inf
+
+
+def tilted_climbing_wave(
+    excess: float, v: float, gamma: float, height: float, width: float, Sc: float = 0.5
+) -> ExactSolution:
+    r"""x = x0 - R0(x0)(e^(gamma c t) - 1)/c, R = R0(x0) e^(gamma c t), c the excess slope.
+
+    Let w = R + u + (v/gamma) ln R = -c x at the start; carried at v it is -c (x - v t) later. With
+    u = -c (x - v t) - R - (v/gamma) ln R the first equation becomes R_t = gamma R (R_x + c): along
+    dx/dt = -gamma R the layer grows as dR/dt = gamma c R, which integrates to the above.
+    """
+    length = 80.0
+    R0 = partial(_hump, height=height, width=width, length=length)
+    until = 0.5 / (gamma * excess)
+
+    def layers(x: Array, t: float) -> tuple[Array, Array]:
+        growth = math.exp(gamma * excess * t)
+        climb = (growth - 1) / excess
+
+        def gap(start: Array, place: Array) -> Array:
+            return start - R0(start) * climb - place
+
+        start = _root(gap, x, x + (1 + height) * climb + 1e-9, x)
+        R = R0(start) * growth
+        u = -excess * (x - v * t) - R - v / gamma * np.log(R)
+        return u - Sc * x, R
+
+    reached = gamma * (1 + height) * math.exp(0.5) * until
+    material = Material(v, 0.0, gamma, Sc)
+    window = (v * until + MARGIN, length - reached - MARGIN)
+    return ExactSolution("tilted climbing wave", material, length, "open", until, layers, window)
+
+
+def steady_filling(w: float, v: float, gamma: float, Sc: float = 0.5) -> ExactSolution:
+    """R = w (L - x)/v, S - Sc = -v/(gamma (L - x)), rising at w behind a wall at L.
+
+    E = gamma R (S - Sc) = -w everywhere, so h rises at w; v R_x = -w balances it. The domain ends
+    short of the wall, where R is so thin that the influence of the foot hardly climbs.
+    """
+    wall, length, until = 30.0, 28.0, 6.0
+
+    def layers(x: Array, t: float) -> tuple[Array, Array]:
+        u = w * t - v / gamma * np.log(wall - x)
+        return u - Sc * x, w * (wall - x) / v
+
+    material = Material(v, 0.0, gamma, Sc)
+    window = (v * until + MARGIN, length - 2.0)
+    return ExactSolution("steady filling", material, length, "open", until, layers, window)
+
+
+def _hump(x: Array, height: float, width: float, length: float) -> Array:
+    distance = (x - length / 2 + length / 2) % length - length / 2
+    return 1 + height * np.exp(-((distance / width) ** 2))
+
+
+def _root(gap: Callable[[Array, Array], Array], low: Array, high: Array, x: Array) -> Array:
+    found = elementwise.find_root(
+        gap, (low, high), args=(x,), tolerances={"xatol": 0.0, "xrtol": 4e-16}
+    )
+    return np.asarray(found.x)

@@ -17,6 +17,7 @@ from pde.solvers import RungeKuttaSolver, ScipySolver
 from scipy import sparse
 
 from bcre_pde.equation import BCRE, Material
+from bcre_pde.fluxes import SMALLEST_GRID
 
 Array = NDArray[np.float64]
 Ends = Literal["open", "periodic"]
@@ -38,14 +39,25 @@ class Problem:
     ----------
     initial: function of positions x, shape (N,), that returns h and R there, lengths.
     material: the coefficients.
-    length: the domain is 0 <= x <= length, x running downhill.
+    length: the domain is 0 <= x <= length, x running downhill; finite, > 0.
     ends: ``"open"`` (closed top, open foot) or ``"periodic"`` (in h + Sc x and R).
+
+    Raises
+    ------
+    ValueError
+        naming the parameter, its value and what is allowed.
     """
 
     initial: Callable[[Array], tuple[Array, Array]]
     material: Material
     length: float
     ends: Ends = "open"
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.length) and self.length > 0):
+            raise ValueError(f"length = {self.length!r}: must be a finite number > 0")
+        if self.ends not in get_args(Ends):
+            raise ValueError(f"ends = {self.ends!r}: must be one of {get_args(Ends)}")
 
 
 @dataclass(frozen=True)
@@ -113,6 +125,8 @@ def solve(
         raise ValueError(f"method = {method!r}: must be one of {get_args(Method)}")
     if not 0 < tolerance < 1:
         raise ValueError(f"tolerance = {tolerance!r}: must lie between 0 and 1")
+    if cells < SMALLEST_GRID:
+        raise ValueError(f"cells = {cells!r}: must be at least {SMALLEST_GRID}")
     periodic = problem.ends == "periodic"
     grid = CartesianGrid([[0.0, problem.length]], cells, periodic=periodic)
     equation = BCRE(problem.material, grid)
@@ -183,7 +197,10 @@ def _advance(
     largest_R = _layer_scale(state[1].data)
     if method == "runge-kutta":
         bound = equation.largest_explicit_step(largest_R)
-        solver = partial(BoundedRungeKutta, dt_max=bound, tolerance=tolerance)
+        least = max(min(1e-10, 1e-10 * bound), 4 * math.ulp(span[1]))
+        if not least < bound:
+            raise SolveError(f"{method}: the stable step {bound:.3g} is too small to be taken")
+        solver = partial(BoundedRungeKutta, dt_max=bound, dt_min=least, tolerance=tolerance)
         first = min(bound, span[1] - span[0])
     else:
         options: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * largest_R}
@@ -211,18 +228,20 @@ def _advance(
 
 
 class BoundedRungeKutta(RungeKuttaSolver):  # type: ignore[misc]
-    """py-pde's adaptive Runge-Kutta-Fehlberg solver with the two things that this equation needs.
+    """py-pde's adaptive Runge-Kutta-Fehlberg solver with the three things that this equation needs.
 
     Its error is relative to the largest rolling layer of the moment, which may grow from 1e-150;
-    and its step never passes ``dt_max``: without that it would grow fourfold wherever nothing
-    happens, until rounding errors have been amplified to the size of the tolerance.
+    its step never passes ``dt_max``: without that it would grow fourfold wherever nothing
+    happens, until rounding errors have been amplified to the size of the tolerance; and it gives
+    up below ``dt_min``, since py-pde's 1e-10 would be a long step where times are short.
     """
 
     name = "bounded runge-kutta"
 
-    def __init__(self, pde: BCRE, *, dt_max: float, **options: Any) -> None:
+    def __init__(self, pde: BCRE, *, dt_max: float, dt_min: float, **options: Any) -> None:
         super().__init__(pde, adaptive=True, **options)
         self.dt_max = dt_max
+        self.dt_min = dt_min
 
     def _make_single_step_error_estimate(self, state: FieldCollection) -> Callable[..., Any]:
         single_step = super()._make_single_step_error_estimate(state)

@@ -17,6 +17,10 @@ STUDIES = (
     "roughness_decay",
     "uphill_propagation",
     "second_critical_angle",
+    "modified_equation",
+    "printed_rule",
+    "one_variable",
+    "order_of_accuracy",
 )
 
 

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import root_scalar
@@ -23,6 +23,7 @@ import bcre_ca
 import bcre_pde
 from bcre_ca.theory import max_stable_step, second_critical_excess
 from bcre_pde.theory import second_critical_slope
+from bcre_studies.measured import Measured
 from bcre_studies.outcome import growth_rate
 from bcre_studies.profiles import Array
 
@@ -32,28 +33,23 @@ TRACE = 1e-150
 REACH = 2.0
 """Distance of the ends in units of sqrt(4 D t): an echo is then weakened by e^(-16)."""
 
+FOLDS = 20.0
+"""The search starts where a trace changes by e^20 at most: no over- or underflow."""
+
 CELL_PECLET = (1.0, 0.5, 0.25)
 """Cells of the PDE's three grids, v dx/D; R varies as e^(v x/2D) about the place of release."""
-
-
-@dataclass(frozen=True)
-class Measured:
-    """Sd - Sc on the finest grid and its grid convergence index."""
-
-    value: float
-    error: float
 
 
 def measure_sd_automaton(material: bcre_pde.Material, d: float) -> float:
     """Sd - Sc of the automaton with cells of length d; v, D, gamma > 0.
 
     Released in one cell. What sigma_abs leaves out is of order d^2/(16 D' t1 t2) with the weighted
-    diffusion D' = sqrt(D (D + v d)), below 1e-4 of gamma (Sd - Sc) at the times taken here.
+    diffusion D' = sqrt(D (D + v d)): below 1e-4 of gamma (Sd - Sc) at the times taken here.
     """
     v, D, gamma, Sc = _positive(material)
     expected = second_critical_excess(v, D, gamma, d)
     diffusion = math.sqrt(D * (D + v * d))
-    late = max(32 / (gamma * expected), 50 * d**2 / diffusion)
+    late = max(8 / (gamma * expected), 200 * d**2 / diffusion)
     dt = bcre_ca.MARGIN * max_stable_step(v, D, gamma, d)
     steps = math.ceil(late / 2 / dt)
     reach = math.ceil(REACH * math.sqrt(4 * diffusion * 2 * steps * dt) / d)
@@ -64,37 +60,40 @@ def measure_sd_automaton(material: bcre_pde.Material, d: float) -> float:
         R = np.zeros_like(h)
         R[reach] = TRACE
         h, middle = bcre_ca.evolve(h, R, rule, steps)
-        _, late = bcre_ca.evolve(h, middle, rule, steps)
-        return growth_rate((steps * dt, 2 * steps * dt), (middle[reach], late[reach]))
+        _, end = bcre_ca.evolve(h, middle, rule, steps)
+        return growth_rate((steps * dt, 2 * steps * dt), (middle[reach], end[reach]))
 
-    return _root(rate, expected, 1e-7)
+    return _root(rate, expected, FOLDS / (gamma * expected * late), 1e-7)
 
 
 def measure_sd_pde(material: bcre_pde.Material) -> Measured:
-    """Sd - Sc of BCRE on three grids, with the error of the finest; v, D, gamma > 0.
+    """Sd - Sc of BCRE on three grids, with the finest one's convergence index; v, D, gamma > 0.
 
-    Lengths are counted in D/v and times in D/v^2, the only ones there are. Released as a pulse of
-    width D/v, which leaves 1/(8 t1 t2) (D/v^2)^2, about 2e-4, of the rate out.
+    Lengths are counted in D/v and times in D/v^2, the only ones there are. Released is a Gaussian
+    of width w = D/v: a point release that happened w^2/(4 D) earlier and, as it has been carried
+    since, D/(4 v) uphill of its centre. There and from then on it is observed.
     """
     v, D, gamma, Sc = _positive(material)
     expected = second_critical_slope(v, D, gamma, Sc) - Sc
-    times = (32 * D / v**2, 64 * D / v**2)
+    times = (16 * D / v**2, 32 * D / v**2)
+    earlier = D / (4 * v**2)
     reach = REACH * math.sqrt(4 * D * times[1])
 
     def on_grid(peclet: float) -> float:
         half = math.ceil(reach / (peclet * D / v))
-        centre = (half + 0.5) * peclet * D / v
+        place = (half + 0.5) * peclet * D / v
+        centre = place + v * earlier
 
         def rate(excess: float) -> float:
             def initial(x: Array) -> tuple[Array, Array]:
                 return -(Sc + excess) * x, TRACE * np.exp(-(((x - centre) * v / D) ** 2))
 
-            problem = bcre_pde.Problem(initial, material, length=2 * centre)
+            problem = bcre_pde.Problem(initial, material, length=2 * place)
             solution = bcre_pde.solve(problem, times, 2 * half + 1)
             middle, late = solution.R[:, half]
-            return growth_rate(times, (middle, late))
+            return growth_rate((times[0] + earlier, times[1] + earlier), (middle, late))
 
-        return _root(rate, expected, 1e-6)
+        return _root(rate, expected, FOLDS / (gamma * expected * times[1]), 1e-6)
 
     coarse, medium, fine = (on_grid(peclet) for peclet in CELL_PECLET)
     return Measured(fine, bcre_pde.grid_convergence_index(fine, medium, coarse).error)
@@ -104,15 +103,18 @@ def effective_for_growth(material: bcre_pde.Material, d: float) -> bcre_pde.Mate
     """BCRE with the diffusion that the automaton has at Sd: D_eff = D + v d/2.
 
     The part -v^2 dt/2 of D_eff stands for the Euler step's (dt/2) R_tt, with R_tt = v^2 R_xx of a
-    layer that is carried and does not grow. At Sd nothing changes in time at the fixed place, R_tt = 0,
-    and Sd does not depend on dt: the part falls away.
+    layer that is carried and does not grow. At Sd nothing changes in time at the fixed place:
+    R_tt = 0, the part falls away, and Sd does not depend on dt.
     """
     return replace(material, D=material.D + material.v * d / 2)
 
 
-def _root(rate: Callable[[float], float], scale: float, relative: float) -> float:
-    """Zero of the rate, by secants from 20 % below and above ``scale``, which only sets the start."""
-    found = root_scalar(rate, method="secant", x0=0.8 * scale, x1=1.2 * scale, rtol=relative)
+def _root(rate: Callable[[float], float], start: float, spread: float, relative: float) -> float:
+    """Zero of the rate, by secants that start about ``start`` and end wherever it is."""
+    spread = min(spread, 0.2)
+    found = root_scalar(
+        rate, method="secant", x0=(1 - spread) * start, x1=(1 + spread) * start, rtol=relative
+    )
     if not found.converged:
         raise ArithmeticError(f"no slope at which R neither grows nor decays: {found.flag}")
     return float(found.root)

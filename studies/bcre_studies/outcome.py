@@ -1,7 +1,7 @@
 r"""What came of a perturbation: did it climb, did it grow where it was, what slope did it leave.
 
-* Growth at a fixed place: a packet on a frozen slope obeys ln R = a + sigma_abs t - (1/2) ln t where
-  the observer stands, so two late times give
+* Growth at a fixed place: there a packet on a frozen slope obeys, once it is late,
+  ln R = a + sigma_abs t - (1/2) ln t, so that two times give
 
       sigma_abs = (ln(R2/R1) + (1/2) ln(t2/t1)) / (t2 - t1)
 
@@ -17,7 +17,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bcre_studies.profiles import Array
+from bcre_pde import Solution
 from bcre_studies.simulate import Run
 
 TOP = 0.1
@@ -29,7 +29,7 @@ FALLEN = 0.5
 EARLIER = 2 / 3
 """Growth is judged between this part of the time and its end."""
 
-SPENT = 1e-9
+SPENT = 1e-6
 """An avalanche is spent when its largest R is this part of the pulse that started it."""
 
 
@@ -58,7 +58,7 @@ def growth_rate(t: tuple[float, float], R: tuple[float, float]) -> float:
 
 
 def reached_the_top(x: ArrayLike, u_start: ArrayLike, u_end: ArrayLike) -> bool:
-    """Mean fall of u over the top tenth > half of the excess height H0 = u(top) - u(foot) at the start.
+    """Mean fall of u over the top tenth > H0/2, H0 = u(top) - u(foot) at the start.
 
     An avalanche that runs to the top brings the whole slope down to the repose line through its
     foot, a fall of about H0 there; a slope at or below repose has no excess height to lose.
@@ -75,12 +75,12 @@ def reached_the_top(x: ArrayLike, u_start: ArrayLike, u_end: ArrayLike) -> bool:
 
 
 def grows_uphill(run: Run, centre: float) -> bool:
-    """Whether max R over x <= centre is larger at the end than after two thirds of the time.
+    """Whether t^(1/2) max R over x <= centre has grown over the last third of the time.
 
-    In the linear range this is sigma_abs > 0 as far as the run's time can tell; a scarp that climbs
-    grows too, because its R is its height less v/gamma.
+    In the linear range this is sigma_abs > 0 (:func:`growth_rate`); a scarp that climbs grows too,
+    because its R is its height less v/gamma.
     """
-    uphill = run.R[:, run.x <= centre].max(axis=1)
+    uphill = np.sqrt(run.t) * run.R[:, run.x <= centre].max(axis=1)
     earlier = int(np.searchsorted(run.t, EARLIER * run.t[-1]))
     return bool(uphill[-1] > uphill[earlier])
 
@@ -103,14 +103,14 @@ def outcome(run: Run, centre: float) -> Outcome:
     return Outcome.STARTS if grows_uphill(run, centre) else Outcome.NO
 
 
-def decided(x: Array, u: Array, R: Array) -> bool:
-    """Whether the outcome is known: the top has come down, or the avalanche is :data:`SPENT`.
+def decided(run: Run | Solution) -> bool:
+    """Whether the outcome is known: the top has come down, or the avalanche is :data:`SPENT`."""
+    return reached_the_top(run.x, run.u[0], run.u[-1]) or spent(run)
 
-    Parameters
-    ----------
-    x, u, R: as recorded so far, shapes (N,), (T, N), (T, N).
-    """
-    return reached_the_top(x, u[0], u[-1]) or bool(R[-1].max() <= SPENT * R[0].max())
+
+def spent(run: Run | Solution) -> bool:
+    """Whether max R has fallen to :data:`SPENT` of what was released."""
+    return bool(run.R[-1].max() <= SPENT * run.R[0].max())
 
 
 def slope(x: ArrayLike, h: ArrayLike) -> float:

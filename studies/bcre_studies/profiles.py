@@ -168,11 +168,12 @@ def read_table(key: str, path: Path, column: str, scene: Scene) -> tuple[Array, 
     if not (np.diff(x) > 0).all():
         row = int(np.argmax(~(np.diff(x) > 0))) + 1
         raise refuse(f"x = {x[row]!r} in row {row + 1}: x must ascend")
-    half = scene.d / 2 * (1 + 1e-9)
-    if x[0] > half or x[-1] < scene.domain.length - half:
+    length = scene.domain.length
+    low, high = (max(scene.d, gap) / 2 * (1 + 1e-9) for gap in (x[1] - x[0], x[-1] - x[-2]))
+    if x[0] > low or x[-1] < length - high:
         raise refuse(
-            f"x runs from {x[0]:.6g} to {x[-1]:.6g}; must span the cell centres, "
-            f"{scene.d / 2:.6g} to {scene.domain.length - scene.d / 2:.6g}"
+            f"x runs from {x[0]:.6g} to {x[-1]:.6g}; must span 0 to {length:.6g} "
+            f"(half a cell, or half its own spacing, may be missing at either end)"
         )
     return x, values
 

@@ -147,10 +147,12 @@ def problem_of(
 def effective_problem_of(scene: Scene, with_curvature: bool = True) -> bcre_pde.Problem:
     """BCRE with the automaton's own D_eff, and its kappa_eff unless left out.
 
-    The automaton's modified equation (``bcre_ca.theory``) tells what its cells and steps add.
+    The automaton's modified equation (``bcre_ca.theory``) tells what its cells and steps add;
+    kappa_eff is that under the layer which lies everywhere at the start.
     """
     rule = rule_of(scene)
-    kappa = scene.material.kappa + (rule.effective_curvature() if with_curvature else 0.0)
+    R0 = float(scene.initial(scene.centres())[1].min())
+    kappa = scene.material.kappa + (rule.effective_curvature(R0) if with_curvature else 0.0)
     return problem_of(scene, D=rule.effective_diffusion(), kappa=kappa)
 
 
