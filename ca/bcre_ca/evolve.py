@@ -112,6 +112,8 @@ def frames(
         rule = replace(rule, dt=step)
         require_stable(pile, rule, ends)
     for time in times:
+        if time < pile.t:
+            raise ValueError(f"times = {list(times)!r}: must ascend from t = {pile.t!r}")
         pile = _follow(pile, rule, time, ends) if step == "auto" else _reach(pile, rule, time, ends)
         yield pile
 

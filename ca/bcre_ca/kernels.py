@@ -47,7 +47,7 @@ def _synchronous_open(h, R, c, b, q, k, s, drop, steps, periodic):  # type: igno
         for i in range(last):
             R_i = R[i]
             flux_out = q * R_i - b * R[i + 1]
-            exchange = k * R_i * ((h[i] - h[i + 1]) - s)
+            exchange = R_i * (k * ((h[i] - h[i + 1]) - s))
             h[i] = h[i] - exchange
             R[i] = R_i + ((flux_in - flux_out) + exchange)
             flux_in = flux_out
@@ -67,12 +67,12 @@ def _synchronous_periodic(h, R, c, b, q, k, s, drop, steps, periodic):  # type: 
         R_first, R_last, h_last = R[0], R[last], h[last]
         into_first = q * R_last - b * R_first
         into_last = q * R[last - 1] - b * R_last if last > 0 else into_first
-        exchange_last = k * R_last * ((h_last - (h[0] - drop)) - s)
+        exchange_last = R_last * (k * ((h_last - (h[0] - drop)) - s))
         flux_in = into_first
         for i in range(last):
             R_i = R[i]
             flux_out = q * R_i - b * R[i + 1]
-            exchange = k * R_i * ((h[i] - h[i + 1]) - s)
+            exchange = R_i * (k * ((h[i] - h[i + 1]) - s))
             h[i] = h[i] - exchange
             R[i] = R_i + ((flux_in - flux_out) + exchange)
             flux_in = flux_out
@@ -88,11 +88,11 @@ def _visit(h, R, i, c, b, q, k, s, drop, periodic):  # type: ignore[no-untyped-d
     outflow = 0.0
     if i < last:
         flux = q * R[i] - b * R[i + 1]
-        exchange = k * R[i] * ((h[i] - h[i + 1]) - s)
+        exchange = R[i] * (k * ((h[i] - h[i + 1]) - s))
         R[i + 1] += flux
     elif periodic:
         flux = q * R[i] - b * R[0]
-        exchange = k * R[i] * ((h[i] - (h[0] - drop)) - s)
+        exchange = R[i] * (k * ((h[i] - (h[0] - drop)) - s))
         R[0] += flux
     else:
         flux = c * R[i]

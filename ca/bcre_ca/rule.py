@@ -32,7 +32,7 @@ class Coefficients(NamedTuple):
 
     ``c = v dt/d``, ``b = D dt/d^2``, ``q = c + b``, ``k = gamma dt/d`` and ``s = ±Sc d`` (minus for
     the printed sign). The flux out of cell i is ``q R(i) - b R(i+1)`` and the exchange
-    ``k R(i) (h(i) - h(i+1) - s)``.
+    ``R(i) (k (h(i) - h(i+1) - s))``, in this order of operations.
     """
 
     c: float

@@ -51,12 +51,12 @@ def _synchronous(h: Array, R: Array, rule: Rule, ends: Ends) -> tuple[Array, Arr
         h_next = np.append(h[1:], h[0] - period_drop(rule, h.size))
         flux_out = q * R - b * R_next
         flux_in = np.append(flux_out[-1], flux_out[:-1])
-        exchange = k * R * ((h - h_next) - s)
+        exchange = R * (k * ((h - h_next) - s))
         outflow = 0.0
     else:
         flux_out = np.append(q * R[:-1] - b * R[1:], c * R[-1])
         flux_in = np.append(0.0, flux_out[:-1])
-        exchange = np.append(k * R[:-1] * ((h[:-1] - h[1:]) - s), 0.0)
+        exchange = np.append(R[:-1] * (k * ((h[:-1] - h[1:]) - s)), 0.0)
         outflow = float(flux_out[-1])
     return h - exchange, R + ((flux_in - flux_out) + exchange), outflow
 
@@ -68,11 +68,11 @@ def _in_place(h: Array, R: Array, rule: Rule, ends: Ends) -> tuple[Array, Array,
     for i in range(last + 1) if rule.order == "right" else range(last, -1, -1):
         if i < last:
             flux = q * R[i] - b * R[i + 1]
-            exchange = k * R[i] * ((h[i] - h[i + 1]) - s)
+            exchange = R[i] * (k * ((h[i] - h[i + 1]) - s))
             R[i + 1] += flux
         elif ends == "periodic":
             flux = q * R[i] - b * R[0]
-            exchange = k * R[i] * ((h[i] - (h[0] - period_drop(rule, h.size))) - s)
+            exchange = R[i] * (k * ((h[i] - (h[0] - period_drop(rule, h.size))) - s))
             R[0] += flux
         else:
             flux, exchange = c * R[i], 0.0

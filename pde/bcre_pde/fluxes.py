@@ -16,7 +16,8 @@ max(R, 0), since a negative layer would otherwise grow on any slope above repose
 Open ends: no flux through the top, and u_xx = 0 there; the advective flux v R through the foot,
 beyond which the surface goes on at repose: u_x = 0 on the foot, so that u there obeys
 du_foot/dt = kappa R u_xx and stays where it is if kappa = 0. The stencils that would reach past an
-open end are replaced by those of order 2 and 3 that the domain offers. Periodic ends wrap.
+open end are replaced by those of order 2 and 3 that the domain offers (the flux through the foot
+itself by order 1, as R_x = 0 there). Periodic ends wrap.
 """
 
 from __future__ import annotations

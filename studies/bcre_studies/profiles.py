@@ -129,7 +129,8 @@ class TableRolling(_Term):
         if (R < 0).any():
             row = int(np.argmax(R < 0))
             raise ProfileError(
-                f"{key}.file = {self.file!r}: R = {R[row]!r} at x = {x[row]!r}: must be >= 0"
+                f"{key}.file = {self.file!r}: R = {float(R[row])!r} at x = {float(x[row])!r}: "
+                "must be >= 0"
             )
         self._spline = spline(x, R, scene)
 
@@ -167,7 +168,7 @@ def read_table(key: str, path: Path, column: str, scene: Scene) -> tuple[Array, 
         raise refuse(f"x and {column} must be finite numbers in every row")
     if not (np.diff(x) > 0).all():
         row = int(np.argmax(~(np.diff(x) > 0))) + 1
-        raise refuse(f"x = {x[row]!r} in row {row + 1}: x must ascend")
+        raise refuse(f"x = {float(x[row])!r} in row {row + 1}: x must ascend")
     length = scene.domain.length
     low, high = (max(scene.d, gap) / 2 * (1 + 1e-9) for gap in (x[1] - x[0], x[-1] - x[-2]))
     if x[0] > low or x[-1] < length - high:

@@ -52,7 +52,7 @@ WHY = "5 % of S - Sc: at figure 1's slopes under one degree, as near as a pile's
 AUTOMATON_TOLERANCE, PDE_TOLERANCE = 0.001, 0.01
 THEORY_WHY = "of the estimate 1/t leaves under 0.01 % at the times taken; the rest is reserve"
 LAST_DIGIT = 1e-5
-OUTCOME_WHY = "the same word; the definitions and the time, t = 3000, stood before the runs"
+OUTCOME_WHY = "the same word, by the definitions of ``outcome`` and at t = 3000"
 
 SD, OUTCOME, THRESHOLD = "Sd - Sc", "runs to the top?", "threshold S0 - Sc"
 QUANTITIES = (SD, OUTCOME, THRESHOLD)

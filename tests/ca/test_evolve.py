@@ -1,4 +1,5 @@
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -64,7 +65,7 @@ def test_no_steps_give_equal_but_new_arrays():
 def test_evolve_takes_lists_and_integers():
     h, R = evolve([3, 2, 1], [0, 1, 0], FIGURE_1, 1)
     assert h.dtype == R.dtype == float
-    assert R == pytest.approx([0.1, 0.7 + 0.01 * 0.5, 0.2], rel=1e-14)
+    assert pytest.approx([0.1, 0.7 + 0.01 * 0.5, 0.2], rel=1e-14) == R
 
 
 def test_evolve_takes_exactly_the_steps_asked_for():
@@ -86,9 +87,9 @@ def test_advance_counts_steps_time_and_outflow():
 @pytest.mark.parametrize(
     ("h", "R", "message"),
     [
-        ([1.0, 2.0], [1.0], "shape"),
-        ([], [], "not empty"),
-        ([[1.0, 2.0]], [[1.0, 2.0]], "one-dimensional"),
+        ([1.0, 2.0], [1.0], r"shape \(2,\), R \(1,\)"),
+        ([], [], r"shape \(0,\)"),
+        ([[1.0, 2.0]], [[1.0, 2.0]], r"shape \(1, 2\)"),
         ([1.0, math.nan], [1.0, 1.0], "finite"),
         ([1.0, 2.0], [1.0, math.inf], "finite"),
     ],
@@ -126,7 +127,7 @@ def test_frames_hit_their_times_exactly(step):
     piles = list(frames(figure_1(), FIGURE_1, times, step=step))
     assert [pile.t for pile in piles] == times
     assert piles[0].R.tobytes() == figure_1().R.tobytes()
-    assert all(earlier.steps < later.steps for earlier, later in zip(piles, piles[1:], strict=False))
+    assert all(earlier.steps < later.steps for earlier, later in pairwise(piles))
 
 
 def test_frames_at_whole_steps_are_the_states_of_evolve_to_the_bit():
@@ -145,7 +146,7 @@ def test_fixed_step_is_shortened_as_little_as_makes_the_times_fall_on_steps():
 
 
 def test_fixed_step_that_is_unstable_at_the_start_is_refused():
-    with pytest.raises(UnstableStep, match="largest stable step is 3.33333"):
+    with pytest.raises(UnstableStep, match=r"largest stable step is 3\.33333"):
         next(frames(figure_1(), FIGURE_1, [10.0], step=4.0))
 
 
@@ -159,23 +160,23 @@ def test_step_that_follows_the_bounds_shrinks_as_the_avalanche_grows():
     assert late > 2 * early
 
 
-def test_step_that_follows_the_bounds_converges_to_the_fixed_step():
-    """Both are first order in time: halving the fixed step halves the distance."""
-    (followed,) = frames(figure_1(), FIGURE_1, [100.0], step="auto")
-    (fine,) = frames(figure_1(), FIGURE_1, [100.0], step=0.01)
-    (coarse,) = frames(figure_1(), FIGURE_1, [100.0], step=2.0)
-    assert np.abs(followed.R - fine.R).mean() < 1.5 * np.abs(coarse.R - fine.R).mean()
-    assert followed.R.sum() == pytest.approx(fine.R.sum(), rel=0.05)
+def test_step_that_follows_the_bounds_takes_four_fifths_of_the_bound():
+    """Early in figure 1 R is small and its bound is constant, so that the step is known."""
+    (followed,) = frames(figure_1(), FIGURE_1, [80.0], step="auto")
+    (fixed,) = frames(figure_1(), FIGURE_1, [80.0], step=0.8 / 0.3)
+    assert followed.steps == fixed.steps == 30
+    assert pytest.approx(fixed.R, rel=1e-9) == followed.R
 
 
 @settings(max_examples=40)
 @given(data=st.data(), until=st.floats(0.1, 50))
 def test_step_that_follows_the_bounds_keeps_mass_and_sign_of_any_pile(cases, data, until):
+    """Below 1e-300 the products of the rule round to multiples of 5e-324, of either sign."""
     h, R, rule, ends = data.draw(cases(orders=["synchronous"], signs=["consistent"], most=20))
     (end,) = frames(Pile(h, R), rule, [until], ends, "auto")
     scale = rule.d * (np.abs(h).sum() + R.sum()) + 1e-300
     assert abs(end.mass(rule.d) + end.outflow - Pile(h, R).mass(rule.d)) <= 1e-12 * scale
-    assert end.R.min() >= 0
+    assert end.R.min() >= -1e-300
     assert end.t == until
 
 

@@ -1,0 +1,125 @@
+"""When a perturbed slope returns to repose, on slopes and pulses that stand in no study."""
+
+import pandas as pd
+import pytest
+
+import bcre_pde
+from bcre_studies import repose_return
+from bcre_studies.claim import Verdict
+from bcre_studies.outcome import slope
+from bcre_studies.repeated_pulses import slopes_of_automaton, slopes_of_pde
+from bcre_studies.repose_return import FAST, SLOW, closed_form, effective_of, scene_of
+from bcre_studies.simulate import problem_of, run_automaton
+from bcre_studies.thin_pulse import slope_after_thin_pulse
+
+
+def final_slopes(scene, cells=100):
+    """S - Sc after the pulse, automaton and BCRE."""
+    times, Sc = [scene.time.until], scene.material.Sc
+    run = run_automaton(scene, times)
+    solution = bcre_pde.solve(problem_of(scene), times, cells, tolerance=1e-4)
+    return slope(run.x, run.h[-1]) - Sc, slope(solution.x, solution.h[-1]) - Sc
+
+
+@pytest.mark.parametrize("excess", [-0.25, 0.17, 0.4])
+def test_a_thin_pulse_changes_the_slope_by_its_closed_form(excess):
+    scene = scene_of(SLOW, excess, 0.01).with_changes(v=0.13, gamma=0.012)
+    automaton, pde = final_slopes(scene, 200)
+    for measured, d in ((automaton, scene.d), (pde, 0.0)):
+        change = slope_after_thin_pulse(scene, d) - excess
+        assert change > 1e-6
+        assert measured - excess == pytest.approx(change, rel=0.02)
+
+
+@pytest.mark.parametrize(("kind", "excess", "pulse"), [(SLOW, 1.3, 2.0), (SLOW, 2.9, 0.3)])
+def test_after_a_run_to_the_top_both_models_are_at_repose_to_three_digits(kind, excess, pulse):
+    automaton, pde = final_slopes(scene_of(kind, excess, pulse))
+    assert automaton == pytest.approx(0, abs=1e-3)
+    assert pde == pytest.approx(0, abs=1e-3)
+
+
+@pytest.mark.parametrize("excess", [-0.05, 0.05, 0.4])
+def test_a_fast_avalanche_leaves_the_slope_as_it_was(excess):
+    automaton, pde = final_slopes(scene_of(FAST, excess, 2.0))
+    assert automaton == pytest.approx(excess, abs=1e-4)
+    assert pde == pytest.approx(excess, abs=1e-4)
+
+
+def test_a_slope_above_repose_is_not_brought_below_the_critical_angle_by_one_pulse():
+    automaton, pde = final_slopes(scene_of(SLOW, 0.2, 3.0))
+    assert automaton > 0.2
+    assert pde > 0.2
+
+
+def test_the_cells_own_diffusion_decides_near_the_slope_from_which_the_avalanche_climbs_back():
+    scene = scene_of(SLOW, 0.6, 2.0)
+    automaton, pde = final_slopes(scene)
+    effective = bcre_pde.solve(effective_of(scene), [3000.0], 100, tolerance=1e-4)
+    assert automaton == pytest.approx(0, abs=1e-3)
+    assert pde > 0.6
+    assert slope(effective.x, effective.h[-1]) == pytest.approx(0.5, abs=1e-3)
+
+
+def test_repeated_pulses_bring_a_slope_to_repose_from_above_and_towards_it_from_below():
+    above = scene_of(SLOW, 0.12, 10.0).with_changes(until=1000.0)
+    below = scene_of(SLOW, -0.2, 10.0).with_changes(until=1000.0)
+    from_above = [
+        slopes_of_automaton(above, 14),
+        slopes_of_pde(above, problem_of(above), 50, 14),
+        slopes_of_pde(above, effective_of(above), 50, 14),
+    ]
+    for slopes in from_above:
+        assert slopes[0] > 0.62
+        assert slopes[-1] == pytest.approx(0.5, abs=1e-3)
+    for slopes in (
+        slopes_of_automaton(below, 8),
+        slopes_of_pde(below, problem_of(below), 50, 8),
+    ):
+        assert slopes == sorted(slopes)
+        assert 0.3 < slopes[0] < slopes[-1] < 0.5
+
+
+def test_the_first_of_repeated_pulses_is_a_single_one():
+    scene = scene_of(SLOW, 0.15, 2.0).with_changes(until=1000.0)
+    automaton, pde = final_slopes(scene)
+    assert slopes_of_automaton(scene, 1) == pytest.approx([automaton + 0.5], abs=1e-12)
+    assert slopes_of_pde(scene, problem_of(scene), 100, 1) == pytest.approx([pde + 0.5], abs=1e-9)
+
+
+def test_the_closed_form_is_repose_above_Sd_and_silent_on_thick_pulses():
+    assert closed_form(scene_of(SLOW, 1.8, 1.0), 1.0) == 0
+    assert closed_form(scene_of(SLOW, 2.6, 1.0), 0.0) == 0
+    assert pd.isna(closed_form(scene_of(SLOW, 1.8, 1.0), 0.0))
+    assert pd.isna(closed_form(scene_of(SLOW, 0.1, 10.0), 1.0))
+
+
+def test_the_verdicts_turn_when_slopes_above_repose_return():
+    kept = _table([0.1, 0.31])
+    returned = _table([0.0, 0.0])
+    halfway = _table([0.05, 0.31])
+    printed, all_or_nothing = (repose_return.judge(kept)[i].verdict for i in (0, 1))
+    assert (printed, all_or_nothing) == (Verdict.DISAGREE, Verdict.AGREE)
+    assert repose_return.judge(returned)[0].verdict is Verdict.AGREE
+    assert repose_return.judge(halfway)[1].verdict is Verdict.DISAGREE
+
+
+def _table(finals):
+    rows = [
+        {"case": kind, "S0 - Sc": excess, "pulse": 1.0, "automaton": final, "pde": final}
+        for kind, excess, final in [
+            (FAST, -0.02, -0.02),
+            (SLOW, 0.1, finals[0]),
+            (SLOW, 0.3, finals[1]),
+            (SLOW, 3.2, 0.0),
+        ]
+    ]
+    extra = {"pde_effective": 0.0, "automaton_theory": 0.0, "pde_theory": 0.0, "verdict": "agree"}
+    points = [
+        {"S0 - Sc": excess, "pulse": pulse, "pulses": n, "model": model, "S - Sc": 0.0}
+        for excess, pulse in repose_return.SEQUENCES
+        for n in range(1, repose_return.RELEASES + 1)
+        for model in ("ca", "pde")
+    ]
+    many = {**rows[0], **extra, "case": repose_return.REPEATED, "pulses": 1}
+    comparison = pd.DataFrame([{**row, **extra, "pulses": 1} for row in rows] + [many])
+    return {"comparison": comparison, "repeated": pd.DataFrame(points)}

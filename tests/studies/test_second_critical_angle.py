@@ -1,0 +1,138 @@
+"""Sd by growth at a fixed place, on parameters that stand in no scene and no study; who climbs."""
+
+import pandas as pd
+import pytest
+
+import bcre_pde
+from bcre_ca.theory import second_critical_excess
+from bcre_studies import second_critical_angle
+from bcre_studies.claim import Verdict
+from bcre_studies.climb import Bracket, climb, threshold
+from bcre_studies.critical_slope import (
+    effective_for_growth,
+    measure_sd_automaton,
+    measure_sd_pde,
+)
+from bcre_studies.outcome import Outcome
+
+MATERIALS = [
+    bcre_pde.Material(v=0.17, D=0.23, gamma=0.021, Sc=0.4),
+    bcre_pde.Material(v=3.1, D=0.06, gamma=0.7, Sc=0.0),
+    bcre_pde.Material(v=0.04, D=0.5, gamma=0.3, Sc=1.2),
+]
+
+
+@pytest.mark.parametrize("material", MATERIALS)
+@pytest.mark.parametrize("d", [0.7, 2.0])
+def test_the_automatons_Sd_is_its_closed_form_within_a_thousandth(material, d):
+    expected = second_critical_excess(material.v, material.D, material.gamma, d)
+    assert measure_sd_automaton(material, d) == pytest.approx(expected, rel=1e-3)
+
+
+def test_the_automatons_Sd_at_figure_1_is_a_number():
+    """(sqrt(0.2) - sqrt(0.1))^2/0.01 = 10 (3 - 2 sqrt 2), whatever the code's closed form says."""
+    measured = measure_sd_automaton(bcre_pde.Material(0.1, 0.1, 0.01, 0.5), 1.0)
+    assert measured == pytest.approx(1.715729, rel=1e-3)
+
+
+@pytest.mark.parametrize("material", MATERIALS)
+def test_the_Sd_of_bcre_is_v_squared_over_4_D_gamma_within_a_hundredth(material):
+    measured = measure_sd_pde(material)
+    expected = material.v**2 / (4 * material.D * material.gamma)
+    assert measured.value == pytest.approx(expected, rel=1e-2)
+    assert measured.error < 1e-3 * expected
+
+
+def test_half_a_cells_drift_counted_as_diffusion_gives_the_automatons_Sd_on_small_cells():
+    material = bcre_pde.Material(v=0.17, D=0.23, gamma=0.021, Sc=0.4)
+    d = 0.2 * material.D / material.v
+    effective = measure_sd_pde(effective_for_growth(material, d)).value
+    assert measure_sd_automaton(material, d) == pytest.approx(effective, rel=3e-3)
+    assert measure_sd_automaton(material, d) < 0.95 * measure_sd_pde(material).value
+
+
+def test_Sd_of_a_layer_that_is_not_carried_is_refused():
+    with pytest.raises(ValueError, match="v = 0"):
+        measure_sd_pde(bcre_pde.Material(v=0.0, D=0.1, gamma=0.01, Sc=0.5))
+
+
+@pytest.mark.parametrize(
+    ("excess", "pulse", "automaton", "pde", "effective"),
+    [
+        (2.1, 1e-6, Outcome.STARTS, Outcome.NO, Outcome.STARTS),
+        (1.0, 10.0, Outcome.YES, Outcome.NO, Outcome.YES),
+        (1.35, 10.0, Outcome.YES, Outcome.YES, Outcome.YES),
+        (0.7, 10.0, Outcome.NO, Outcome.NO, Outcome.NO),
+    ],
+)
+def test_between_the_thresholds_only_what_has_the_cells_diffusion_climbs(
+    excess, pulse, automaton, pde, effective
+):
+    assert climb("ca", 100, excess, pulse) is automaton
+    assert climb("pde", 100, excess, pulse) is pde
+    assert climb("pde effective", 100, excess, pulse) is effective
+
+
+def test_a_finite_pulse_climbs_at_less_than_an_infinitesimal_one():
+    whole = Bracket(0.5, 2.75)
+    small, large = (threshold("ca", (100,), pulse, whole) for pulse in (1e-7, 5.0))
+    assert small.value == pytest.approx(1.715729, rel=0.025)
+    assert large.high < 0.6 * small.low
+
+
+def test_a_threshold_must_hold_on_every_grid():
+    whole = Bracket(0.5, 2.75)
+    coarse = threshold("ca", (100,), 1.0, whole)
+    both = threshold("ca", (100, 200), 1.0, whole)
+    fine = threshold("ca", (200,), 1.0, whole)
+    assert both.low <= coarse.value <= both.high < 1.02 * fine.value
+    assert both.error > coarse.error
+
+
+def _head(quantity):
+    return {"quantity": quantity, "v": 0.1, "D": 0.1, "gamma": 0.01, "d": 1.0}
+
+
+def _table(automaton_sd, automaton_outcome):
+    numbers = {"pde": 2.5, "pde_effective": 1.7, "difference": 0.31, "difference_effective": 0.02}
+    effective = str(Verdict.AGREE_EFFECTIVE)
+    sd = {
+        **_head(second_critical_angle.SD),
+        **numbers,
+        "automaton": automaton_sd,
+        "automaton d/4": 2.2,
+        "automaton_theory": 1.7157,
+        "pde_theory": 2.5,
+        "verdict": effective,
+    }
+    outcome = {
+        **_head(second_critical_angle.OUTCOME),
+        "S0 - Sc": 1.0,
+        "pulse": 10.0,
+        "automaton d/4": "no",
+        "automaton": automaton_outcome,
+        "pde": "no",
+        "pde_effective": "yes",
+        "verdict": effective,
+    }
+    threshold_row = {
+        **_head(second_critical_angle.THRESHOLD),
+        **numbers,
+        "pulse": 1.0,
+        "automaton": 1.27,
+        "automaton d/4": 1.4,
+        "verdict": effective,
+    }
+    return {"comparison": pd.DataFrame([sd, outcome, threshold_row])}
+
+
+def test_the_verdict_on_the_closed_form_turns_when_the_measurement_is_off_by_a_percent():
+    good = second_critical_angle.judge(_table(1.7157, "yes"))[0]
+    bad = second_critical_angle.judge(_table(1.7157 * 1.01, "yes"))[0]
+    assert (good.verdict, bad.verdict) == (Verdict.AGREE, Verdict.DISAGREE)
+
+
+def test_the_evidence_names_the_cases_that_differ():
+    claim = second_critical_angle.judge(_table(1.7157, "yes"))[3]
+    assert claim.verdict is Verdict.AGREE_EFFECTIVE
+    assert "1 and pulse 10 (yes/no, effective yes" in claim.evidence
