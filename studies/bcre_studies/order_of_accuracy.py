@@ -163,7 +163,7 @@ def _errors_of(case: tuple[str, str, Any]) -> list[dict[str, Any]]:
                 "model": model,
                 "scheme": f"{scheme:g} of the stable step" if model == "ca" else scheme,
                 "cells": cells,
-                **{norm: significant(error / spread, 3) for norm, error in absolute.items()},
+                **{norm: significant(error / spread, 2) for norm, error in absolute.items()},
                 "floor": _floor(solution, model, scheme) / spread,
             }
         )

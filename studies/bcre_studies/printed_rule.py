@@ -78,7 +78,7 @@ def read(figure: str, step: str, sign: Sign, order: Order) -> Row:
     mass = start.mass(rule.d)
     return row | {
         "finite": True,
-        "mass_error": significant(abs(last.mass(rule.d) + last.outflow - mass) / mass, 1),
+        "mass_error": round(abs(last.mass(rule.d) + last.outflow - mass) / mass, 12),
         "R_not_negative": bool(min(pile.R.min() for pile in piles) >= 0),
         "ends": bool(last.R.sum() < ENDED * largest),
         "caption": caption(scene, start, last if figure == "figure1" else shown),
