@@ -15,6 +15,7 @@ STUDIES = (
     "paper_figures",
     "repose_return",
     "roughness_decay",
+    "random_roughness",
     "uphill_propagation",
     "second_critical_angle",
     "modified_equation",

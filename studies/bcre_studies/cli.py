@@ -104,14 +104,15 @@ def check() -> None:
     from bcre_studies.catalog import STUDIES
     from bcre_studies.report.write import find, recorded_verdicts, verdict_table
 
+    recorded = recorded_verdicts()
     verdicts = verdict_table([find(name) for name in STUDIES])
     both = verdicts.merge(
-        recorded_verdicts(), how="outer", on=["study", "claim"], suffixes=("", "_recorded")
+        recorded, how="outer", on=["study", "claim"], suffixes=("", "_recorded")
     ).fillna("(none)")
     differs = both["verdict"] != both["verdict_recorded"]
     for row, differing in zip(both.itertuples(), differs, strict=True):
-        recorded = f", recorded as: {row.verdict_recorded}" if differing else ""
-        click.echo(f"{row.study}: {row.claim}: {row.verdict}{recorded}")
+        before = f", recorded as: {row.verdict_recorded}" if differing else ""
+        click.echo(f"{row.study}: {row.claim}: {row.verdict}{before}")
     click.echo(f"{len(both)} claims, {differs.sum()} differ from reports/verdicts.csv")
     if differs.any():
         sys.exit(1)

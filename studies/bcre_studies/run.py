@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import math
+import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Literal
@@ -33,19 +35,58 @@ def run_scene(scene: Scene, model: Literal["ca", "pde", "both"], frames: int) ->
     Raises
     ------
     SceneError
-        where the scene's step is not stable, or not for as long as the scene lasts.
+        where the scene's step is not stable, or not for as long as the scene lasts; where the
+        PDE's solver gives up; where numbers are too large or too small to compute with.
     """
     times = frame_times(scene, frames)
-    runs = []
-    if model in ("ca", "both"):
-        try:
-            runs.append(run_automaton(scene, times))
-        except (bcre_ca.UnstableStep, FloatingPointError) as failure:
-            step = scene.time.step
-            raise SceneError(f"time.step = {step!r}: {failure}, or be 'auto'") from None
-    if model in ("pde", "both"):
-        runs.append(_run_pde(scene, times, runs[0] if runs else None))
+    runs: list[Run] = []
+    try:
+        with (
+            np.errstate(over="raise", divide="raise", invalid="raise"),
+            warnings.catch_warnings(action="ignore", category=UserWarning),  # SciPy's, on tolerance
+        ):
+            if model in ("ca", "both"):
+                scene.initial(scene.centres())  # tells an overflow here from an unstable step
+                runs.append(_run_ca(scene, times))
+            if model in ("pde", "both"):
+                runs.append(_run_pde(scene, times, runs[0] if runs else None))
+    except bcre_pde.SolveError as failure:
+        raise SceneError(
+            f"solver.method = {scene.solver.method!r}: {failure}; must be a method that can solve "
+            f"this scene to solver.tolerance = {scene.solver.tolerance!r}"
+        ) from None
+    except ArithmeticError as failure:
+        raise SceneError(
+            f"{_most_extreme(scene)}: must be nearer to 1, it cannot be computed with ({failure})"
+        ) from None
     return runs
+
+
+def _run_ca(scene: Scene, times: Sequence[float]) -> Run:
+    try:
+        return run_automaton(scene, times)
+    except (bcre_ca.UnstableStep, FloatingPointError) as failure:
+        step = scene.time.step
+        raise SceneError(f"time.step = {step!r}: {failure}, or be 'auto'") from None
+
+
+def _most_extreme(scene: Scene) -> str:
+    """``key = value`` of the number farthest from 1, the likely cause of an overflow."""
+    numbers: dict[str, float] = {}
+
+    def gather(key: str, value: Any) -> None:
+        if isinstance(value, dict):
+            for name, part in value.items():
+                gather(f"{key}.{name}", part)
+        elif isinstance(value, list):
+            for index, part in enumerate(value):
+                gather(f"{key}.{index}", part)
+        elif isinstance(value, float) and value != 0:
+            numbers[key.removeprefix(".")] = value
+
+    gather("", scene.model_dump(mode="json"))
+    key = max(numbers, key=lambda name: abs(math.log10(abs(numbers[name]))))
+    return f"{key} = {numbers[key]!r}"
 
 
 def _run_pde(scene: Scene, times: Sequence[float], automaton: Run | None) -> Run:
@@ -65,7 +106,8 @@ def _run_pde(scene: Scene, times: Sequence[float], automaton: Run | None) -> Run
             return relative
         return SHARE * max(float(np.mean(np.abs(R - automaton.R))), relative)
 
-    with Progress(console=Console(stderr=True), transient=True) as progress:
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
         task = progress.add_task("BCRE", total=scene.time.until)
 
         def show(solution: bcre_pde.Solution) -> bool:
@@ -133,7 +175,8 @@ def summarise(run: Run) -> dict[str, Any]:
         "R_min": float(run.R.min()),
         "R_max": float(run.R.max()),
     }
-    if run.error is not None:
+    if run.model == "pde":
         scale = float(np.mean(np.abs(run.R)))
-        summary["error_estimate"] = run.error / scale if scale > 0 else run.error
+        error = math.inf if run.error is None else run.error / (scale or 1.0)
+        summary["error_estimate"] = error if math.isfinite(error) else None
     return summary

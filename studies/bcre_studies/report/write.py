@@ -12,6 +12,7 @@ import pandas as pd
 
 from bcre_studies.catalog import STUDIES, study
 from bcre_studies.claim import Claim, Verdict
+from bcre_studies.ledger import ENTRIES, Entry
 from bcre_studies.report import style
 from bcre_studies.report.files import REPORTS, replace_file, replace_text
 from bcre_studies.report.store import Tables, tables_of
@@ -57,12 +58,34 @@ def write_study(finding: Finding) -> None:
     replace_text(folder / "README.md", _render("study.md.j2", finding=finding))
 
 
+@dataclass(frozen=True)
+class Settled:
+    """An entry of the ledger with its verdict and our claims that bear on it."""
+
+    entry: Entry
+    verdict: str
+    claims: list[tuple[str, Claim]]
+
+
+def settle(findings: Sequence[Finding]) -> list[Settled]:
+    """The ledger: every claim of the paper with what became of it."""
+    claims = {(finding.name, claim.name): claim for finding in findings for claim in finding.claims}
+    return [
+        Settled(
+            entry,
+            entry.verdict(claims),
+            [(study_name, claims[study_name, name]) for study_name, name in entry.evidence()],
+        )
+        for entry in ENTRIES
+    ]
+
+
 def write_index(findings: Sequence[Finding]) -> None:
-    """Write the index as Markdown and as a page, and record the verdicts."""
+    """Write the index as Markdown and as a page, the ledger, and record the verdicts."""
     replace_text(VERDICTS, verdict_table(findings).to_csv(index=False, lineterminator="\n"))
-    for name in ("README.md", "index.html"):
-        text = _render(f"{name}.j2", findings=findings, verdicts=list(Verdict))
-        replace_text(REPORTS / name, text)
+    content = {"findings": findings, "verdicts": list(Verdict), "ledger": settle(findings)}
+    for name in ("README.md", "index.html", "claims.md"):
+        replace_text(REPORTS / name, _render(f"{name}.j2", **content))
 
 
 def write_all() -> list[Finding]:
@@ -88,7 +111,10 @@ def verdict_table(findings: Sequence[Finding]) -> pd.DataFrame:
 
 def recorded_verdicts() -> pd.DataFrame:
     """The verdicts that the repository records."""
-    return pd.read_csv(VERDICTS)
+    table = pd.read_csv(VERDICTS, dtype=str, keep_default_na=False)
+    if list(table.columns) != ["study", "claim", "verdict"]:
+        raise ValueError(f"{VERDICTS}: must have the columns study,claim,verdict")
+    return table
 
 
 def readable(table: pd.DataFrame) -> pd.DataFrame:
