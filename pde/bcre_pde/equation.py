@@ -32,6 +32,9 @@ class Material:
     gamma: exchange rate, 1/time, >= 0.
     Sc: repose slope, tangent of the angle of repose, >= 0.
     kappa: curvature term of the exchange, length/time, >= 0.
+    v_up: largest speed of the climbing wave, length/time, > 0: for thick flows, in which only the
+        grains next to the static layer exchange, gamma R becomes gamma R/(1 + gamma R/v_up)
+        (Boutreux, Raphaël and de Gennes 1998). Infinite, the default, is the linear law.
 
     Raises
     ------
@@ -44,12 +47,15 @@ class Material:
     gamma: float
     Sc: float
     kappa: float = 0.0
+    v_up: float = math.inf
 
     def __post_init__(self) -> None:
         for name in ("v", "D", "gamma", "Sc", "kappa"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value >= 0):
                 raise ValueError(f"{name} = {value!r}: must be a finite number >= 0")
+        if not self.v_up > 0:
+            raise ValueError(f"v_up = {self.v_up!r}: must be > 0")
 
 
 class BCRE(PDEBase):  # type: ignore[misc]
@@ -106,6 +112,7 @@ class BCRE(PDEBase):  # type: ignore[misc]
             material.kappa,
             self.dx,
             self._periodic,
+            material.gamma / material.v_up,
         )
         return self._rate
 
@@ -116,7 +123,8 @@ class BCRE(PDEBase):  # type: ignore[misc]
         climb gamma R/dx, 272/45 for the spreads D/dx^2 and kappa R/dx^2, and the method 2.78.
         """
         material, dx = self.material, self.dx
-        drift = max(material.v, material.gamma * largest_R)
-        spread = max(material.D, material.kappa * largest_R)
+        exchanging = largest_R / (1 + material.gamma * largest_R / material.v_up)
+        drift = max(material.v, material.gamma * exchanging)
+        spread = max(material.D, material.kappa * exchanging)
         rate = 32 / 15 * drift / dx + 272 / 45 * spread / dx**2
         return 2.78 / rate if rate > 0 else math.inf

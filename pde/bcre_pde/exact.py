@@ -234,6 +234,32 @@ def steady_filling(w: float, v: float, gamma: float, Sc: float = 0.5) -> ExactSo
     return ExactSolution("steady filling", material, length, "open", until, layers, window)
 
 
+def saturated_flow(
+    amplitude: float, wavenumber: float, v: float, v_up: float, Sc: float = 0.5
+) -> ExactSolution:
+    r"""s = s0(x + v_up t), R = R0 + v_up/(v + v_up) (H(x + v_up t) - H(x - v t)), H' = s0.
+
+    s = S - Sc. In the thick limit gamma R >> v_up the saturated law is E = v_up s, so that
+    s_t = v_up s_x and R_t + v R_x = v_up s, which is linear: the forcing travels uphill and with it
+    the response, less a part carried downhill that makes it start from R0. Here s0 = a sin(k x)
+    and gamma = 1e14, so that the limit is reached to rounding.
+    """
+
+    def H(x: Array) -> Array:
+        return -amplitude / wavenumber * np.cos(wavenumber * x)
+
+    def layers(x: Array, t: float) -> tuple[Array, Array]:
+        climbed, carried = H(x + v_up * t), H(x - v * t)
+        return -climbed - Sc * x, 1 + v_up / (v + v_up) * (climbed - carried)
+
+    length = 2 * math.pi / wavenumber
+    material = Material(v, 0.0, 1e14, Sc, v_up=v_up)
+    until = 0.5 * length / (v + v_up)
+    return ExactSolution(
+        "saturated flow", material, length, "periodic", until, layers, (0.0, length)
+    )
+
+
 def _hump(x: Array, height: float, width: float, length: float) -> Array:
     distance = (x - length / 2 + length / 2) % length - length / 2
     return 1 + height * np.exp(-((distance / width) ** 2))

@@ -11,7 +11,8 @@ With u = h + Sc x the system is
 
 The same E leaves u and enters R, and F_x is a difference of face values, so dx sum(u + R) changes
 by the flux through the ends alone. Where R has undershot zero, nothing is exchanged: E uses
-max(R, 0), since a negative layer would otherwise grow on any slope above repose.
+max(R, 0), since a negative layer would otherwise grow on any slope above repose. The saturated law
+for thick flows puts R/(1 + gamma R/v_up) for R in E, so that the wave climbs at v_up at most.
 
 Open ends: no flux through the top, and u_xx = 0 there; the advective flux v R through the foot,
 beyond which the surface goes on at repose: u_x = 0 on the foot, so that u there obeys
@@ -30,7 +31,7 @@ SMALLEST_GRID = 8
 
 @numba.njit(cache=True, error_model="numpy")
 def rate(  # type: ignore[no-untyped-def]
-    state, out, padded, faces, v, D, gamma, kappa, dx, periodic
+    state, out, padded, faces, v, D, gamma, kappa, dx, periodic, saturation=0.0
 ):
     """Write the time derivative of ``state`` into ``out``.
 
@@ -41,6 +42,7 @@ def rate(  # type: ignore[no-untyped-def]
     padded, faces: scratch of shapes (2, N + 6) and (2, N + 1).
     v, D, gamma, kappa: the material; dx the cell length.
     periodic: whether the ends are joined.
+    saturation: gamma/v_up, or 0 for the linear exchange law.
     """
     n = state.shape[1]
     _pad(state, padded, n)
@@ -49,11 +51,12 @@ def rate(  # type: ignore[no-untyped-def]
     _rolling_flux(padded[1], flux, v, D, dx, n)
     if not periodic:
         _rolling_flux_at_open_ends(state[1], flux, v, D, dx, n)
-    _change(padded[0], state[1], u_face, flux, out, gamma, kappa, dx, n)
+    _change(padded[0], state[1], u_face, flux, out, gamma, kappa, dx, n, saturation)
     if not periodic:
         foot = state[2, 0]
-        _change_at_open_ends(state[0], state[1], flux, out, gamma, kappa, dx, n, foot)
-        out[2, 0] = kappa * max(state[1, n - 1], 0.0) * _curvature_on_foot(state[0], foot, dx, n)
+        _change_at_open_ends(state[0], state[1], flux, out, gamma, kappa, dx, n, foot, saturation)
+        exchanging = _exchanging(state[1, n - 1], saturation)
+        out[2, 0] = kappa * exchanging * _curvature_on_foot(state[0], foot, dx, n)
         out[2, n - 1] = flux[n] / (n * dx)
 
 
@@ -132,8 +135,17 @@ def _fourth_order_spread(R, f, D, dx):  # type: ignore[no-untyped-def]
     return D * (15 * (R[f] - R[f - 1]) - (R[f + 1] - R[f - 2])) / (12 * dx)
 
 
+@numba.njit(cache=True, inline="always")
+def _exchanging(R, saturation):  # type: ignore[no-untyped-def]
+    """The part of the layer that exchanges: R+/(1 + saturation R+)."""
+    wet = max(R, 0.0)
+    return wet / (1.0 + saturation * wet)
+
+
 @numba.njit(cache=True)
-def _change(u, R, u_face, flux, out, gamma, kappa, dx, n):  # type: ignore[no-untyped-def]
+def _change(  # type: ignore[no-untyped-def]
+    u, R, u_face, flux, out, gamma, kappa, dx, n, saturation
+):
     u0, u1, u2, u3, u4, u5, u6 = u[0:], u[1:], u[2:], u[3:], u[4:], u[5:], u[6:]
     u_face_out, flux_out = u_face[1:], flux[1:]
     u_rate, R_rate, ends_rate = out[0], out[1], out[2]
@@ -141,14 +153,16 @@ def _change(u, R, u_face, flux, out, gamma, kappa, dx, n):  # type: ignore[no-un
     for i in range(n):
         gradient = u_face_out[i] - u_face[i]
         curvature = 2 * (u0[i] + u6[i]) - 27 * (u1[i] + u5[i]) + 270 * (u2[i] + u4[i]) - 490 * u3[i]
-        exchange = -max(R[i], 0.0) * (slope * gradient + bend * curvature)
+        exchange = -_exchanging(R[i], saturation) * (slope * gradient + bend * curvature)
         u_rate[i] = -exchange
         R_rate[i] = (flux[i] - flux_out[i]) / dx + exchange
         ends_rate[i] = 0.0
 
 
 @numba.njit(cache=True)
-def _change_at_open_ends(u, R, flux, out, gamma, kappa, dx, n, foot):  # type: ignore[no-untyped-def]
+def _change_at_open_ends(  # type: ignore[no-untyped-def]
+    u, R, flux, out, gamma, kappa, dx, n, foot, saturation
+):
     """The cells whose stencils would reach past an end."""
     z = n - 1
     for i, gradient, curvature in (
@@ -167,7 +181,8 @@ def _change_at_open_ends(u, R, flux, out, gamma, kappa, dx, n, foot):  # type: i
             -0.2 * u[z - 2] + 2 * u[z - 1] - 5 * u[z] + 3.2 * foot,
         ),
     ):
-        exchange = -max(R[i], 0.0) * (gamma / dx * gradient + kappa / dx**2 * curvature)
+        rate_per_layer = gamma / dx * gradient + kappa / dx**2 * curvature
+        exchange = -_exchanging(R[i], saturation) * rate_per_layer
         out[0, i] = -exchange
         out[1, i] = (flux[i] - flux[i + 1]) / dx + exchange
 

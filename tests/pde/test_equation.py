@@ -18,6 +18,13 @@ def test_coefficients_must_be_finite_and_not_negative(name, value):
 
 def test_curvature_term_is_left_out_unless_asked_for():
     assert Material(1.0, 0.2, 0.3, 0.5).kappa == 0.0
+    assert Material(1.0, 0.2, 0.3, 0.5).v_up == float("inf")
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0, float("nan")])
+def test_material_refuses_a_climbing_speed_that_is_not_positive(value):
+    with pytest.raises(ValueError, match=r"v_up = .*must be > 0"):
+        Material(**MATERIAL, v_up=value)
 
 
 def test_grid_must_hold_the_widest_stencil():

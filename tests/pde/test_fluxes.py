@@ -9,14 +9,16 @@ from bcre_pde import fluxes
 HALF = sp.Rational(1, 2)
 
 
-def rate(u, R, v=0.0, D=0.0, gamma=0.0, kappa=0.0, dx=1.0, periodic=False, foot=0.0):
+def rate(
+    u, R, v=0.0, D=0.0, gamma=0.0, kappa=0.0, dx=1.0, periodic=False, foot=0.0, saturation=0.0
+):
     """du/dt, dR/dt, du_foot/dt and the flux through the foot."""
     n = len(u)
     state = np.zeros((3, n))
     state[0], state[1], state[2, 0] = u, R, foot
     out = np.full((3, n), np.nan)
     scratch = np.empty((2, n + 6)), np.empty((2, n + 1))
-    fluxes.rate(state, out, *scratch, v, D, gamma, kappa, dx, periodic)
+    fluxes.rate(state, out, *scratch, v, D, gamma, kappa, dx, periodic, saturation)
     return out[0], out[1], out[2, 0], out[2, -1] * n * dx
 
 
@@ -226,3 +228,15 @@ def test_each_term_converges_to_its_derivative_at_fifth_order(coefficient, expec
         errors.append(np.abs(dR - expected(u, R, ux, uxx, Rx, Rxx)).mean())
     assert errors[1] < 2e-6
     assert np.log2(errors[0] / errors[1]) > 4.7
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+def test_saturated_law_is_the_linear_law_of_a_thinner_layer(periodic):
+    rng = np.random.default_rng(5)
+    u, R = np.sort(rng.uniform(0, 9, 30))[::-1], rng.uniform(0, 4, 30)
+    gamma, v_up = 0.7, 0.4
+    saturated, _, _, _ = rate(u, R, gamma=gamma, periodic=periodic, saturation=gamma / v_up)
+    linear, _, _, _ = rate(u, R / (1 + gamma * R / v_up), gamma=gamma, periodic=periodic)
+    assert saturated == pytest.approx(linear, rel=1e-13)
+    steepest = np.abs(rate(u, np.ones(30), gamma=1.0, periodic=periodic)[0])
+    assert (np.abs(saturated) <= v_up * steepest * (1 + 1e-12)).all()
