@@ -42,7 +42,7 @@ WAVE_CELLS = 800
 """So that the shortest waves of the rough slope keep their height in BCRE."""
 CHANGED = 0.01
 TOLERANCE = 0.05
-WHY = "5 % of the slope's excess at the start, as in the study of the repose slope"
+WHY = "of the slope's excess at the start, as in the study of the repose slope"
 
 Row = dict[str, Any]
 
@@ -160,7 +160,7 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
         for excess in EXCESSES
         for model in ("automaton", "pde")
     )
-    tolerance = f"{TOLERANCE:.0%}: {WHY}"
+    tolerance = f"{TOLERANCE:.0%} {WHY}"
     return [
         Claim(
             "return to repose",

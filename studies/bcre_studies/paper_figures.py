@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 TITLE = "The paper's figures in both models"
 TOLERANCE = 0.05
 WHY = (
-    "5 % of the area under R: about the width of a line in the paper's figures, below which "
+    "of the area under R: about the width of a line in the paper's figures, below which "
     "its reader could not tell the two apart"
 )
 REFINEMENTS = (1, 2, 4)
@@ -128,7 +128,7 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
                     f"{coarse['difference_effective']:.2g} from BCRE with D_eff and kappa_eff; "
                     f"at d = 1/4: {fine['difference']:.3g} and {fine['difference_effective']:.2g}"
                 ),
-                tolerance=f"{TOLERANCE:.0%}: {WHY}",
+                tolerance=f"{TOLERANCE:.0%} {WHY}",
             )
         )
     return claims

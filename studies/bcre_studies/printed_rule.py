@@ -48,7 +48,7 @@ ENDED = 0.01
 """An avalanche has ended where R has fallen to this part of its largest total."""
 PATIENCE = {"figure1": 3000.0, "figure2": 60.0, "figure3": 60.0}
 """How long it is waited for: three times what the drift takes from top to foot, or more."""
-WHY = "yes or no by the definitions in the study's text, which stood before it ran"
+WHY = "yes or no, by the definitions in the study's text"
 
 Row = dict[str, Any]
 

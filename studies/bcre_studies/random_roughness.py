@@ -29,7 +29,7 @@ TITLE = "Decay of random roughness over 32 seeds"
 SEEDS = range(1, 33)
 CELLS = 400
 TOLERANCE = 0.05
-WHY = "5 % of the roughness at the start, as in the study of single modes"
+WHY = "of the roughness at the start, as in the study of single modes"
 CONFIDENCE = 0.95
 MODELS = {"ca": "automaton", "pde": "pde", "pde effective": "pde_effective"}
 
@@ -90,7 +90,7 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
             f"{automaton['seeds']} seeds with its 95 % interval: {words['automaton']} in the "
             f"automaton, {words['pde']} in BCRE with kappa = 0, {words['pde_effective']} with "
             f"D_eff and kappa_eff",
-            tolerance=f"{TOLERANCE:.0%}: {WHY}",
+            tolerance=f"{TOLERANCE:.0%} {WHY}",
         )
     ]
 

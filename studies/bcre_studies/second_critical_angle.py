@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
 TITLE = "The second critical angle"
 TOLERANCE = 0.05
-WHY = "5 % of S - Sc: at figure 1's slopes under one degree, as near as a pile's angle is read"
+WHY = "of S - Sc: at figure 1's slopes under one degree, as near as a pile's angle is read"
 AUTOMATON_TOLERANCE, PDE_TOLERANCE = 0.001, 0.01
 THEORY_WHY = "of the estimate 1/t leaves under 0.01 % at the times taken; the rest is reserve"
 LAST_DIGIT = 1e-5
@@ -226,7 +226,7 @@ def _sd_claim(rows: pd.DataFrame) -> Claim:
         f"figure 1's parameters the models disagree between {figure1['automaton']:.4g} and "
         f"{figure1['pde']:.4g}; cells four times smaller raise the automaton's to "
         f"{figure1['automaton d/4']:.4g}",
-        f"{TOLERANCE:.0%}: {WHY}",
+        f"{TOLERANCE:.0%} {WHY}",
     )
 
 
@@ -265,7 +265,7 @@ def _threshold_claim(rows: pd.DataFrame, sd: Any) -> Claim:
         f"{rows['difference_effective'].max():.1g} of the difference of up to "
         f"{rows['difference'].max():.2g} is left; with d = 1/4 the automaton's thresholds are "
         f"{small['automaton d/4']:.3g} and {large['automaton d/4']:.3g}",
-        f"{TOLERANCE:.0%}: {WHY}",
+        f"{TOLERANCE:.0%} {WHY}",
     )
 
 

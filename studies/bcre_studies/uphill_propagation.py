@@ -47,8 +47,8 @@ if TYPE_CHECKING:
 TITLE = "Uphill propagation, one mechanism at a time"
 TOLERANCE = 0.05
 WHY = (
-    "5 % of the speed: over the 100 lengths of the paper's figures an arrival 5 lengths apart; "
-    "5 % of the initial pulse's half-width for the reach, under half of the automaton's cell"
+    "of the speed: over the 100 lengths of the paper's figures an arrival 5 lengths apart; "
+    "of the initial pulse's half-width for the reach, under half of the automaton's cell"
 )
 THEORY_TOLERANCE = 0.005
 THEORY_WHY = (
@@ -237,7 +237,7 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
 
 
 def _claim(name: str, statement: str, rows: pd.DataFrame, evidence: str) -> Claim:
-    return Claim(name, statement, worst(rows["verdict"]), evidence, f"{TOLERANCE:.0%}: {WHY}")
+    return Claim(name, statement, worst(rows["verdict"]), evidence, f"{TOLERANCE:.0%} {WHY}")
 
 
 def _front_claim(table: pd.DataFrame) -> Claim:

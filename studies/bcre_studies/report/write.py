@@ -144,4 +144,9 @@ def _render(template: str, **content: object) -> str:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
+    environment.filters["sentence"] = _sentence
     return environment.get_template(template).render(**content)
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:]
