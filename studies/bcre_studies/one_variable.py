@@ -208,15 +208,15 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
     table = tables["comparison"]
     figure, axes = style.panels(1, 2)
     looks = {
-        "automaton": ("ca", "two-layer automaton"),
-        "pde": ("pde", "BCRE (PDE)"),
+        "one_variable": {"color": "k", "marker": "D", "label": "height alone"},
+        "automaton": {"color": style.MODELS["ca"]["color"], "marker": "o", "markersize": 10}
+        | {"markerfacecolor": "none", "label": "two-layer automaton"},
+        "pde": {"color": style.MODELS["pde"]["color"], "marker": "s", "label": "BCRE (PDE)"},
     }
     for axis, pulse in zip(axes, PULSES, strict=True):
         rows = table[table["case"].str.endswith(f"pulse {pulse:g}")]
-        axis.plot(EXCESSES, rows["one_variable"], "k:", marker="D", label="height alone")
-        for column, (model, label) in looks.items():
-            look = {**style.MODELS[model], "marker": style.MARKERS[model], "label": label}
-            axis.plot(EXCESSES, rows[column], **look)
+        for column, look in looks.items():
+            axis.plot(EXCESSES, rows[column], linestyle="", **look)
         axis.set_xlabel("S0 - Sc")
         axis.set_ylabel("final S - Sc")
         axis.set_title("undisturbed" if pulse == 0 else f"after a pulse of {pulse:g}", loc="left")

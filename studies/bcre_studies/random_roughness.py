@@ -103,6 +103,7 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
     """The ratio of every seed, model by model, with the mean and its interval."""
     seeds, table = tables["seeds"], tables["comparison"].set_index("model")
     figure, (axis,) = style.panels(1, 1)
+    figure.set_size_inches(7.0, 3.6)
     for place, (model, column) in enumerate(MODELS.items()):
         color, marker = style.MODELS[model]["color"], style.MARKERS[model]
         spread = np.linspace(-0.25, 0.25, len(seeds))

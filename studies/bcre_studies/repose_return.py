@@ -337,18 +337,13 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
     return figure
 
 
-def _marker(model: str, **changes: Any) -> dict[str, Any]:
-    color = style.MODELS[model]["color"]
-    return {"marker": style.MARKERS[model], "linestyle": "", "color": color, **changes}
-
-
 def _draw_final(axis: Axes, rows: pd.DataFrame) -> None:
     """Pulse 0.1 hollow, 1 half filled, 10 full; the dash-dotted line is S = S0."""
     fills = dict(zip(SLOW_PULSES, ("none", "left", "full"), strict=True))
     for (model, column), shift in zip(MODELS.items(), (-0.04, 0.0, 0.04), strict=True):
         for pulse, fill in fills.items():
             chosen = rows[rows["pulse"] == pulse]
-            look = _marker(model, fillstyle=fill, markerfacecoloralt="white", markersize=6)
+            look = style.marker(model, fillstyle=fill, markerfacecoloralt="white", markersize=6)
             axis.plot(chosen["S0 - Sc"] + shift, chosen[column], **look)
     axis.plot([-0.3, 1.1], [-0.3, 1.1], **style.START)
     axis.annotate("S = S0", (1.1, 1.1), xytext=(4, -8), textcoords="offset points", fontsize=8)
@@ -363,7 +358,7 @@ def _draw_change(axis: Axes, table: pd.DataFrame) -> None:
         rows = table[(table["case"] == kind) & (table["pulse"] == 1.0)]
         rows = rows[rows["S0 - Sc"].abs() <= CLOSE]
         for model, column in MODELS.items():
-            look = _marker(model, fillstyle="none" if kind == FAST else "full", markersize=6)
+            look = style.marker(model, fillstyle="none" if kind == FAST else "full", markersize=6)
             axis.plot(rows["S0 - Sc"], rows[column] - rows["S0 - Sc"], **look)
         for model, d in (("ca", 1.0), ("pde", 0.0)):
             after = [slope_after_thin_pulse(scene_of(kind, place, 1.0), d) for place in places]

@@ -32,6 +32,7 @@ from bcre_studies.claim import Claim, Verdict, worst
 from bcre_studies.compare import significant
 from bcre_studies.profiles import NOISE_WAVES, Array
 from bcre_studies.report import style
+from bcre_studies.scaled import compare_each
 from bcre_studies.scene import Scene, load
 from bcre_studies.simulate import Run, as_run, problem_of, rule_of, run_automaton
 from bcre_studies.work import each
@@ -148,9 +149,7 @@ def _modes(case: tuple[str, float]) -> list[Row]:
     # BCRE's decay rate may be zero, its phase speed may not.
     scales = [value for pair in zip(own[::2], nominal[1::2], strict=True) for value in pair]
     layer = R0 if field == "u" else 0.0
-    results = observe.compare_each(
-        scene, [0.0, SPAN], measured, scales, TOLERANCE, effective(scene, layer)
-    )
+    results = compare_each(scene, [0.0, SPAN], measured, scales, TOLERANCE, effective(scene, layer))
     rows = [
         {
             "quantity": names[index % 2],
@@ -178,7 +177,7 @@ def _rough_slope() -> tuple[list[Row], pd.DataFrame]:
     def measured(run: Run) -> list[float]:
         return [observe.roughness(u) for u in run.u[1:]]
 
-    results = observe.compare_each(scene, [0.0, *SHOWN], measured, HEIGHT, TOLERANCE, own)
+    results = compare_each(scene, [0.0, *SHOWN], measured, HEIGHT, TOLERANCE, own)
     table = [
         {
             "quantity": RMS,
@@ -328,7 +327,7 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
         axis.set(xlabel="wavenumber k (1/length)", ylabel=f"{quantity} ({unit})")
     for model, line in tables["rough_slope"].groupby("model", sort=False):
         axes[3].plot(line["t"], line["closed form"], **style.MODELS[str(model)])
-        axes[3].plot(line["t"], line["RMS"], **_marker(str(model), 1.0))
+        axes[3].plot(line["t"], line["RMS"], **style.marker(str(model)))
     axes[3].set(xlabel="t", ylabel="root mean square of u (length)")
     axes[3].set_ylim(bottom=0)
     titles = ("(a) surface", "(b) surface", "(c) rolling layer", "(d) rough_slope, d = 1")
@@ -348,18 +347,7 @@ def _draw_modes(axis: Axes, rows: pd.DataFrame, quantity: str) -> None:
         values = np.array([rate[model] for rate in rates])
         line = values.imag / k if quantity == U_SPEED else -values.real
         axis.plot(k, line, **style.MODELS[model])
-        axis.plot(rows["k"], rows[column], **_marker(model, d))
+        axis.plot(rows["k"], rows[column], **style.marker(model, hollow=d < 1))
     axis.annotate(
         f"d = {d:g}", (k[-1], line[-1]), (3, 2 if d == 1 else -9), textcoords="offset points"
     )
-
-
-def _marker(model: str, d: float) -> dict[str, Any]:
-    color = style.MODELS[model]["color"]
-    return {
-        "marker": style.MARKERS[model],
-        "linestyle": "",
-        "color": color,
-        "markersize": 9 if model == "pde effective" else 5,
-        "markerfacecolor": color if d == 1 and model != "pde effective" else "none",
-    }

@@ -283,11 +283,6 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
 COLUMNS = {"ca": "automaton", "pde": "pde", "pde effective": "pde_effective"}
 
 
-def _marker(model: str, **changes: Any) -> dict[str, Any]:
-    color = style.MODELS[model]["color"]
-    return {"marker": style.MARKERS[model], "linestyle": "", "color": color, **changes}
-
-
 def _draw_sd(axis: Axes, rows: pd.DataFrame) -> None:
     """All over v^2/(4 D gamma): what is left depends on Pe = v d/D only."""
     Pe = np.geomspace(0.1, 40, 200)
@@ -296,7 +291,7 @@ def _draw_sd(axis: Axes, rows: pd.DataFrame) -> None:
         axis.plot(Pe, y, **style.MODELS[model])
     for model, column in COLUMNS.items():
         y = (rows[column] / rows["pde_theory"]).astype(float)
-        axis.plot(rows["v"] * rows["d"] / rows["D"], y, **_marker(model))
+        axis.plot(rows["v"] * rows["d"] / rows["D"], y, **style.marker(model))
     axis.set(xscale="log", ylim=(0, 1.1), xlabel="cell Peclet number v d/D")
     axis.set_ylabel("(Sd - Sc) / (v²/4 D gamma)")
     axis.set_title("Sd measured (markers) and closed form", loc="left")
@@ -309,7 +304,7 @@ def _draw_outcomes(axis: Axes, rows: pd.DataFrame) -> None:
         for word, fill in fills.items():
             chosen = rows[rows[column] == word]
             place = chosen["pulse"].map(PULSES.index) + shift
-            look = _marker(model, fillstyle=fill, markerfacecoloralt="white", markersize=6)
+            look = style.marker(model, fillstyle=fill, markerfacecoloralt="white", markersize=6)
             axis.plot(place, chosen["S0 - Sc"], **look)
     axis.set_xticks(range(len(PULSES)), ["$10^{-6}$", "1", "10"])
     axis.set(xlim=(-0.6, len(PULSES) - 0.4), xlabel="pulse amplitude (length)", ylabel="S0 - Sc")
@@ -326,7 +321,9 @@ def _draw_thresholds(axis: Axes, rows: pd.DataFrame) -> None:
     }
     for model, column in COLUMNS.items():
         axis.axhline(limits[model], **{**style.MODELS[model], "linewidth": 1.0})
-        axis.plot(rows["pulse"], rows[column], **_marker(model, markersize=6, fillstyle="none"))
+        axis.plot(
+            rows["pulse"], rows[column], **style.marker(model, markersize=6, fillstyle="none")
+        )
     axis.set(xscale="log", ylim=(0, 2.8), xlabel="pulse amplitude (length)")
     axis.set_ylabel("threshold S0 - Sc")
     axis.set_title("climbs from here on; lines: Sd - Sc", loc="left")

@@ -36,6 +36,7 @@ from bcre_studies.claim import Claim, Verdict, worst
 from bcre_studies.compare import significant
 from bcre_studies.profiles import Incline, Sine, Uniform
 from bcre_studies.report import style
+from bcre_studies.scaled import compare_each
 from bcre_studies.scene import Domain, Scene, Time, load
 from bcre_studies.simulate import Run, problem_of, rule_of
 from bcre_studies.work import each
@@ -104,7 +105,7 @@ def front(d: float, excess: float) -> list[Row]:
     width = 3.0
     release = 1e-150 * width / (2 * np.sqrt(D * times[0]))
     theory = bcre_pde.theory.uphill_front_speed(v, D, sigma)
-    (result,) = observe.compare_each(
+    (result,) = compare_each(
         scene,
         times,
         lambda run: [observe.front_speed(run, release)],
@@ -139,7 +140,7 @@ def wave(d: float, R0: float) -> list[Row]:
     def speed(run: Run) -> list[float]:
         return [observe.mode_rate(run.x, run.u[0], run.u[1], span, k).imag / k]
 
-    (result,) = observe.compare_each(
+    (result,) = compare_each(
         scene,
         [0.0, span],
         speed,
@@ -163,7 +164,7 @@ def scarp(d: float) -> list[Row]:
     times = [float(t) for t in np.arange(0.0, 281.0, 2.0)]
     material = scene.material
     laws = [bcre_pde.theory.scarp_speed(material.v, material.gamma, H) for H in HEIGHTS]
-    results = observe.compare_each(
+    results = compare_each(
         scene,
         times,
         lambda run: [observe.scarp_speed(run, H) for H in HEIGHTS],
@@ -190,7 +191,7 @@ def reach(d: float) -> list[Row]:
         )
         return [start - end for end in ends]
 
-    results = observe.compare_each(scene, [0.0, scene.time.until], reaches, HALF_WIDTH, TOLERANCE)
+    results = compare_each(scene, [0.0, scene.time.until], reaches, HALF_WIDTH, TOLERANCE)
     theory = closed_reaches(scene, scene.material.D)
     rule = rule_of(scene)
     own_theory = closed_reaches(scene, rule.effective_diffusion(), rule.dt)
@@ -332,7 +333,7 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
         for d in CELLS:
             rows = _of(table, quantity, d)
             for model, column in COLUMNS.items():
-                axis.plot(rows["value"], rows[column], **_marker(model, d))
+                axis.plot(rows["value"], rows[column], **style.marker(model, hollow=d < 1))
         axis.set(xlabel=label, ylabel=f"{quantity} (length/time)")
         axis.set_title(title, loc="left")
     _draw_reach(axes[3], table)
@@ -360,26 +361,15 @@ def _closed_forms(axis: Axes, quantity: str) -> None:
     axis.plot(x, lines, **style.MODELS["pde"])
 
 
-def _marker(model: str, d: float) -> dict[str, Any]:
-    color = style.MODELS[model]["color"]
-    return {
-        "marker": style.MARKERS[model],
-        "linestyle": "",
-        "color": color,
-        "markersize": 9 if model == "pde effective" else 5,
-        "markerfacecolor": color if d == 1 and model != "pde effective" else "none",
-    }
-
-
 def _draw_reach(axis: Axes, table: pd.DataFrame) -> None:
     places = [(quantity, d) for quantity in (REACH_R, REACH_H) for d in CELLS]
     for place, (quantity, d) in enumerate(places):
         row = _of(table, quantity, d).iloc[0]
         for model, column in COLUMNS.items():
-            axis.plot(row[column], place, **_marker(model, d))
+            axis.plot(row[column], place, **style.marker(model, hollow=d < 1))
     axis.axvline(0, **style.START)
     names = {REACH_R: "R", REACH_H: "change of h"}
     axis.set_yticks(range(len(places)), [f"{names[quantity]}\nd = {d:g}" for quantity, d in places])
     axis.set_ylim(len(places) - 0.5, -0.5)
-    axis.set_xlabel("reach above the pulse's edge at the start (length)")
+    axis.set_xlabel("reach above the pulse's edge (length)")
     axis.set_title("(d) reach in figure 3", loc="left")

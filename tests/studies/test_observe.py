@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import bcre_pde
-from bcre_studies import observe
+from bcre_studies import observe, scaled
 from bcre_studies.claim import Verdict
 from bcre_studies.scene import load
 from bcre_studies.simulate import Run
@@ -96,7 +96,7 @@ def comparison(automaton, pde, effective, scale, error=0.0):
     nominal, own = (
         bcre_pde.Refined(None, value, (8, 16, 32), 5.0, error, 1e-3) for value in (pde, effective)
     )
-    return observe.ScaledComparison(automaton, nominal, own, 0.05, scale)
+    return scaled.ScaledComparison(automaton, nominal, own, 0.05, scale)
 
 
 def test_a_rate_that_is_zero_in_the_pde_is_judged_by_the_scale():
@@ -114,7 +114,7 @@ def test_an_error_that_is_too_large_leaves_the_comparison_unresolved():
 
 def test_each_number_is_compared_by_itself():
     scene = load("figure3").with_changes(until=1.0)
-    mass, foot = observe.compare_each(
+    mass, foot = scaled.compare_each(
         scene,
         [1.0],
         lambda run: [run.mass()[-1], run.R[-1].max()],

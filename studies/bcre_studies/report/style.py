@@ -43,6 +43,20 @@ LABELS = {
 START: Look = {"color": "0.55", "linestyle": (0, (4, 2, 1, 2)), "linewidth": 1.0}
 
 
+def marker(model: str, *, hollow: bool = False, **changes: Any) -> Look:
+    """A model's marker without a line.
+
+    That of the effective PDE is a frame round what it lies upon, unless a ``fillstyle`` is given.
+    """
+    frame = model == "pde effective" and "fillstyle" not in changes
+    color = MODELS[model]["color"]
+    look: Look = {"marker": MARKERS[model], "linestyle": "", "color": color}
+    look |= {"markersize": 9 if frame else 5}
+    if hollow or frame:
+        look["markerfacecolor"] = "none"
+    return look | changes
+
+
 def panels(rows: int, columns: int) -> tuple[Figure, list[Axes]]:
     """A figure of so many panels, and its axes row by row."""
     mpl.rcParams.update(RC)
