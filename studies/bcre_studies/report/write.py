@@ -111,7 +111,10 @@ def verdict_table(findings: Sequence[Finding]) -> pd.DataFrame:
 
 def recorded_verdicts() -> pd.DataFrame:
     """The verdicts that the repository records."""
-    table = pd.read_csv(VERDICTS, dtype=str, keep_default_na=False)
+    try:
+        table = pd.read_csv(VERDICTS, dtype=str, keep_default_na=False)
+    except ValueError as error:
+        raise ValueError(f"{VERDICTS}: must be a CSV file: {error}") from None
     if list(table.columns) != ["study", "claim", "verdict"]:
         raise ValueError(f"{VERDICTS}: must have the columns study,claim,verdict")
     return table
@@ -125,8 +128,13 @@ def readable(table: pd.DataFrame) -> pd.DataFrame:
 
 def markdown(table: pd.DataFrame) -> str:
     """A Markdown table."""
-    text = readable(table).to_markdown(index=False, disable_numparse=True)
-    return str(text)
+    shown = readable(table).map(_in_cell).rename(columns=_in_cell)
+    return str(shown.to_markdown(index=False, disable_numparse=True))
+
+
+def _in_cell(text: str) -> str:
+    """A bar would end the cell of a Markdown table."""
+    return text.replace("|", r"\|")
 
 
 def _cell(value: object) -> str:
@@ -145,6 +153,7 @@ def _render(template: str, **content: object) -> str:
         keep_trailing_newline=True,
     )
     environment.filters["sentence"] = _sentence
+    environment.filters["in_cell"] = _in_cell
     return environment.get_template(template).render(**content)
 
 

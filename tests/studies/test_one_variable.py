@@ -1,0 +1,115 @@
+"""The control of height alone: its rule, and which of the paper's properties it has."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bcre_studies import one_variable as study
+from bcre_studies.claim import Verdict
+from bcre_studies.one_variable import SETTLED, settle
+from bcre_studies.outcome import slope
+
+CELLS, D = 60, 0.5
+X = (np.arange(CELLS) + 0.5) * D
+
+
+def rough(seed, amplitude=1.0):
+    return amplitude * np.random.default_rng(seed).uniform(-1, 1, CELLS)
+
+
+@settings(max_examples=20, deadline=None)
+@given(seed=st.integers(0, 10**6), Sc=st.floats(0, 2), amplitude=st.floats(0, 3))
+def test_control_with_periodic_ends_conserves_mass_and_flattens_every_roughness(
+    seed, Sc, amplitude
+):
+    h = rough(seed, amplitude) - Sc * X
+    end = settle(h, Sc * D, True)
+    assert math.fsum(end) == pytest.approx(math.fsum(h), abs=1e-10)
+    u = end + Sc * X
+    assert np.ptp(u) <= CELLS * 4 * SETTLED + 1e-12
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+@pytest.mark.parametrize("steepness", [-1.0, 0.0, 0.3, 0.5])
+def test_slope_not_above_repose_is_left_alone(periodic, steepness):
+    h = -steepness * X if not periodic else -0.5 * X
+    before = h.copy()
+    assert np.array_equal(settle(h, 0.5 * D, periodic), before)
+    assert np.array_equal(h, before)
+
+
+def test_bump_whose_flanks_stand_is_left_alone():
+    h = 0.2 * np.sin(X / 2)
+    assert np.diff(h).min() > -0.5 * D
+    assert np.array_equal(settle(h, 0.5 * D, False), h)
+
+
+@pytest.mark.parametrize("excess", [0.1, 1.0, 4.0])
+@pytest.mark.parametrize("Sc", [0.0, 0.5, 1.3])
+def test_slope_above_repose_ends_at_repose_undisturbed(excess, Sc):
+    h = (Sc + excess) * (X[-1] - X)
+    end = settle(h, Sc * D, False)
+    assert slope(X, end) == pytest.approx(Sc, abs=1e-6)
+    assert (end[:-1] - end[1:]).max() <= Sc * D + 4.1 * SETTLED
+    assert end[-1] == h[-1]
+
+
+def test_input_is_not_changed():
+    h = 2.0 * (X[-1] - X)
+    before = h.copy()
+    settle(h, 0.5 * D, False)
+    assert np.array_equal(h, before)
+
+
+def test_what_is_too_steep_moves_one_cell_down_until_it_stands():
+    h = np.array([1.0, 0.0, 0.0, 0.0])
+    end = settle(h, 0.5, False)
+    assert end == pytest.approx([0.75, 0.25, 0.0, 0.0], abs=1e-8)
+    assert end.sum() == pytest.approx(1, abs=1e-12)
+
+
+@pytest.mark.parametrize(("excess", "pulse"), [(0.5, 1.0), (3.2, 0.0)])
+def test_control_returns_to_repose_where_two_layers_do_not(excess, pulse):
+    row = study.final_slope(excess, pulse)
+    assert row["one_variable"] == pytest.approx(0, abs=1e-3)
+    assert row["automaton"] == pytest.approx(excess, rel=1e-2)
+    assert row["pde"] == pytest.approx(excess, rel=1e-2)
+
+
+def test_control_changes_the_surface_less_far_uphill_than_two_layers_do():
+    row = study.reach()
+    assert 0 < row["one_variable"] < 0.5 * row["automaton"]
+    assert row["automaton"] == pytest.approx(row["pde"], abs=0.6)
+
+
+def test_control_smooths_more_than_two_layers_and_bcre_not_at_all():
+    row = study.roughness()
+    assert row["one_variable"] <= 1e-5
+    assert 0.2 < row["automaton"] < 0.6
+    assert row["pde"] == pytest.approx(1, abs=0.01)
+
+
+def verdicts(stands=None, rough=0.1, reach=1.0, control=0.0):
+    rows = [
+        ("final S - Sc", f"S0 - Sc = {excess:g}, pulse {pulse:g}", control, kept, kept)
+        for excess in study.EXCESSES
+        for pulse in study.PULSES
+        for kept in [excess if stands is None and pulse == 0 else stands or 0.0]
+    ]
+    rows += [("RMS of u, end over start", "rough_slope", rough, 0.4, 1.0)]
+    rows += [("reach uphill", "figure3", reach, 6.5, 6.25)]
+    columns = ["quantity", "case", "one_variable", "automaton", "pde"]
+    claims = study.judge({"comparison": pd.DataFrame(rows, columns=columns)})
+    return [claim.verdict is Verdict.AGREE for claim in claims]
+
+
+def test_every_claim_can_fail():
+    assert verdicts() == [True, True, True, True]
+    assert verdicts(control=0.2) == [False, True, True, False]
+    assert verdicts(rough=0.99) == [True, False, True, True]
+    assert verdicts(reach=6.4) == [True, True, False, True]
+    assert verdicts(stands=0.1) == [True, True, True, False]

@@ -1,0 +1,410 @@
+"""The reports: the same bytes every time, nothing half-written, text as text, ``bcre check``."""
+
+import ast
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import bcre_ca
+import bcre_pde
+import bcre_studies
+from bcre_studies import catalog, cli
+from bcre_studies.claim import Claim, Verdict
+from bcre_studies.report import files, store, style, write
+from bcre_studies.report.files import replace_bytes, replace_file, replace_text
+
+
+@pytest.fixture
+def places(tmp_path, monkeypatch):
+    """Reports and store in a temporary folder."""
+    monkeypatch.setattr(files, "REPORTS", tmp_path / "reports")
+    monkeypatch.setattr(write, "REPORTS", tmp_path / "reports")
+    monkeypatch.setattr(write, "VERDICTS", tmp_path / "reports/verdicts.csv")
+    monkeypatch.setattr(store, "CACHE", tmp_path / "cache")
+    return tmp_path
+
+
+class Fake(ModuleType):
+    """A study of no substance that counts how often it is run."""
+
+    TITLE = "A study <of> [no] substance"
+
+    def __init__(self):
+        super().__init__("bcre_studies.fake", "Measures nothing, <i>by</i> R -> 0 & no equation.")
+        self.runs = 0
+        self.claims = [claim("first", Verdict.AGREE), claim("second", Verdict.DISAGREE)]
+
+    def run(self):
+        self.runs += 1
+        rows = {"case": ["a", "b|c"], "count": [1, 2], "value": [1 / 3, np.nan], "note": ["", None]}
+        return {"comparison": pd.DataFrame(rows), "curve": pd.DataFrame({"x": [0.123456789]})}
+
+    def judge(self, tables):
+        assert set(tables) == {"comparison", "curve"}
+        return self.claims
+
+    def draw(self, tables):
+        figure, (axis,) = style.panels(1, 1)
+        axis.plot([0, 1], tables["curve"]["x"].tolist() * 2, **style.MODELS["ca"])
+        style.legend(figure, ["ca"])
+        return figure
+
+
+def claim(name, verdict, evidence="1 < 2", statement="It holds."):
+    return Claim(name, statement, verdict, evidence, "a tenth: made up")
+
+
+@pytest.fixture
+def fake(places, monkeypatch):
+    """The only study there is."""
+    module = Fake()
+    monkeypatch.setitem(sys.modules, "bcre_studies.fake", module)
+    monkeypatch.setattr(catalog, "STUDIES", ("fake",))
+    monkeypatch.setattr(write, "STUDIES", ("fake",))
+    monkeypatch.setattr(write, "ENTRIES", ())
+    return module
+
+
+@pytest.fixture
+def bcre(monkeypatch, capsys):
+    def bcre(*arguments):
+        monkeypatch.setattr(sys, "argv", ["bcre", *arguments])
+        try:
+            cli.main()
+            code = 0
+        except SystemExit as ended:
+            code = ended.code
+        printed = capsys.readouterr()
+        return code, printed.out, printed.err
+
+    return bcre
+
+
+def contents(folder):
+    return {
+        str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in sorted(Path(folder).rglob("*"))
+        if path.is_file()
+    }
+
+
+# The same bytes
+
+
+def test_study_written_twice_fresh_or_from_the_store_gives_the_same_bytes(places):
+    seen = []
+    for fresh in (True, False, True):
+        if fresh:
+            shutil.rmtree(places / "cache", ignore_errors=True)
+        write.write_study(write.find("printed_rule"))
+        seen.append(contents(places / "reports"))
+        shutil.rmtree(places / "reports")
+    assert seen[0] == seen[1] == seen[2]
+    assert set(seen[0]) == {
+        "printed_rule/README.md",
+        "printed_rule/comparison.csv",
+        "printed_rule/figure.svg",
+    }
+
+
+def test_another_process_with_another_hash_seed_writes_the_same_bytes(places):
+    write.write_study(write.find("printed_rule"))
+    here = contents(places / "reports")
+    script = (
+        "from pathlib import Path; from bcre_studies.report import store, write\n"
+        "write.REPORTS, store.CACHE = Path('other'), Path('store')\n"
+        "write.write_study(write.find('printed_rule'))"
+    )
+    environment = os.environ | {"PYTHONHASHSEED": "77", "TZ": "Asia/Tokyo"}
+    subprocess.run([sys.executable, "-c", script], cwd=places, env=environment, check=True)
+    assert contents(places / "other") == here
+
+
+def test_index_written_twice_gives_the_same_bytes(fake, places):
+    write.write_all()
+    first = contents(places / "reports")
+    shutil.rmtree(places / "reports")
+    write.write_all()
+    assert contents(places / "reports") == first
+    assert {"README.md", "index.html", "verdicts.csv", "fake/curve.csv"} <= set(first)
+    assert fake.runs == 1
+
+
+def test_no_file_of_a_report_bears_a_time(fake, places):
+    write.write_all()
+    svg = (places / "reports/fake/figure.svg").read_text(encoding="utf-8")
+    assert "<dc:date>" not in svg
+
+
+# The store
+
+
+def test_stored_tables_are_those_that_were_measured_to_five_digits(fake):
+    first, second = store.tables_of("fake"), store.tables_of("fake")
+    assert fake.runs == 1
+    for key in ("comparison", "curve"):
+        pd.testing.assert_frame_equal(first[key], second[key])
+    assert first["comparison"]["value"][0] == 0.33333
+    assert first["comparison"]["count"].tolist() == [1, 2]
+    assert first["curve"]["x"][0] == 0.12346
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda content: b"",
+        lambda content: content[:20],
+        lambda content: content[: len(content) // 2],
+        lambda content: content[:-1],
+        lambda content: content + b"\x00",
+        lambda content: bytes([content[0] ^ 1]) + content[1:],
+        lambda content: content[:40] + bytes([content[40] ^ 128]) + content[41:],
+        lambda content: content[:-1] + bytes([content[-1] ^ 4]),
+    ],
+)
+def test_stored_result_that_is_damaged_is_noticed_and_redone(fake, places, damage):
+    expected = store.tables_of("fake")
+    (path,) = (places / "cache").iterdir()
+    whole = path.read_bytes()
+    path.write_bytes(damage(whole))
+    again = store.tables_of("fake")
+    assert fake.runs == 2
+    pd.testing.assert_frame_equal(again["comparison"], expected["comparison"])
+    assert path.read_bytes() == whole
+    store.tables_of("fake")
+    assert fake.runs == 2
+
+
+def test_study_that_fails_leaves_nothing_in_the_store(fake, places, monkeypatch):
+    def fail():
+        raise RuntimeError("no")
+
+    monkeypatch.setattr(fake, "run", fail)
+    with pytest.raises(RuntimeError, match="no"):
+        store.tables_of("fake")
+    assert not (places / "cache").exists()
+
+
+def test_stored_result_is_for_the_sources_and_libraries_that_made_it(tmp_path, monkeypatch):
+    for package in (bcre_ca, bcre_pde, bcre_studies):
+        source = Path(str(package.__file__)).parent
+        target = tmp_path / package.__name__
+        shutil.copytree(source, target, ignore=shutil.ignore_patterns("__pycache__"))
+        monkeypatch.setattr(package, "__file__", str(target / "__init__.py"))
+    keys = [store._key("printed_rule")]
+
+    def change(name):
+        path = tmp_path / name
+        path.write_text(path.read_text(encoding="utf-8") + "\n", encoding="utf-8")
+        keys.append(store._key("printed_rule"))
+        return keys[-1] != keys[-2]
+
+    for name in (
+        "bcre_ca/step.py",
+        "bcre_pde/fluxes.py",
+        "bcre_studies/printed_rule.py",
+        "bcre_studies/observe.py",
+        "bcre_studies/critical_slope.py",
+        "bcre_studies/scenes/figure1.toml",
+        "bcre_studies/scenes/climbing_wave.csv",
+    ):
+        assert change(name)
+    for name in ("bcre_studies/one_variable.py", "bcre_studies/report/write.py"):
+        assert not change(name)
+    monkeypatch.setattr(store, "version", lambda library: "999")
+    assert store._key("printed_rule") != keys[-1]
+    assert store._key("one_variable") != store._key("printed_rule")
+
+
+def test_no_study_imports_another_whose_change_the_store_would_not_see():
+    folder = Path(str(bcre_studies.__file__)).parent
+    for path in folder.glob("*.py"):
+        imported = {
+            name
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("bcre_studies")
+            for name in [str(node.module).rpartition(".")[2], *(alias.name for alias in node.names)]
+        }
+        assert not imported & set(catalog.STUDIES), path.name
+
+
+# Whole or not at all
+
+
+def test_file_is_left_as_it_was_when_writing_fails_half_way(tmp_path):
+    path = tmp_path / "a.txt"
+    replace_text(path, "old")
+
+    def half(temporary):
+        temporary.write_text("ne", encoding="utf-8")
+        raise OSError("disk full")
+
+    with pytest.raises(OSError, match="disk full"):
+        replace_file(path, half)
+    assert path.read_text(encoding="utf-8") == "old"
+    assert [entry.name for entry in tmp_path.iterdir()] == ["a.txt"]
+
+
+def test_file_that_is_interrupted_before_it_was_there_does_not_come_to_be(tmp_path):
+    def interrupt(temporary):
+        temporary.write_bytes(b"half")
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        replace_file(tmp_path / "new/a.txt", interrupt)
+    assert list((tmp_path / "new").iterdir()) == []
+
+
+def test_old_file_is_there_until_the_new_one_is_whole(tmp_path):
+    path = tmp_path / "a.txt"
+    replace_bytes(path, b"old")
+
+    def write_new(temporary):
+        temporary.write_bytes(b"new")
+        assert path.read_bytes() == b"old"
+        assert temporary.parent == path.parent
+
+    replace_file(path, write_new)
+    assert path.read_bytes() == b"new"
+    assert path.stat().st_mode & 0o777 == 0o644
+
+
+def test_text_is_written_as_utf_8_with_its_line_ends(tmp_path):
+    replace_text(tmp_path / "deep/er/a.txt", "κ = γ d/2\n")
+    assert (tmp_path / "deep/er/a.txt").read_bytes() == "κ = γ d/2\n".encode()
+
+
+# Texts and tables
+
+
+def test_markup_in_the_texts_of_a_finding_is_text_on_the_page(fake, places):
+    attack = "<script>alert(1)</script>"
+    table = pd.DataFrame({f"{attack}": [attack], "b": ['"><img src=x onerror=alert(1)>']})
+    fake.claims = [claim("a", Verdict.AGREE, attack, attack)]
+    found = replace(write.find("fake"), tables={"comparison": table}, title=attack, text=attack)
+    write.write_index([found])
+    page = (places / "reports/index.html").read_text(encoding="utf-8")
+    assert "<script" not in page
+    assert "<img src=x" not in page
+    assert page.count("&lt;script&gt;") >= 6
+    assert page.count('<h2 id="fake"') == 1
+
+
+def test_cell_or_statement_with_a_bar_stays_one_cell_of_its_markdown_table(fake, places):
+    rows = write.find("fake").comparison.splitlines()
+    bars = {row.replace(r"\|", "").count("|") for row in rows}
+    assert bars == {5}
+    fake.claims = [claim("a", Verdict.AGREE, statement="It erodes at |Sc|.")]
+    write.write_all()
+    index = (places / "reports/README.md").read_text(encoding="utf-8")
+    (row,) = (line for line in index.splitlines() if line.startswith("| [fake]"))
+    assert row.replace(r"\|", "").count("|") == 3 + len(Verdict)
+    assert r"\|Sc\|" in row
+
+
+def test_numbers_are_shown_short_and_gaps_empty():
+    table = pd.DataFrame({"a_b": [1 / 3, np.nan], "n": [3, 4], "t": [None, True]})
+    shown = write.readable(table)
+    assert list(shown.columns) == ["a b", "n", "t"]
+    assert shown["a b"].tolist() == ["0.333333", ""]
+    assert shown["n"].tolist() == ["3", "4"]
+    assert shown["t"].tolist() == ["", "True"]
+
+
+def test_page_of_a_study_has_its_claims_tolerances_text_numbers_and_command(fake, places):
+    write.write_study(write.find("fake"))
+    page = (places / "reports/fake/README.md").read_text(encoding="utf-8")
+    for word in (fake.TITLE, "It holds.", "a tenth: made up", "figure.svg", "`bcre study fake`"):
+        assert word in page
+    assert "0.33333" in page
+    assert "[`curve.csv`](curve.csv)" in page
+    table = pd.read_csv(places / "reports/fake/comparison.csv")
+    assert table["value"].tolist()[0] == 0.33333
+
+
+# Verdicts and bcre check
+
+
+def test_verdict_table_has_one_row_a_claim(fake):
+    table = write.verdict_table([write.find("fake")])
+    assert table.to_dict("list") == {
+        "study": ["fake", "fake"],
+        "claim": ["first", "second"],
+        "verdict": ["agree", "disagree"],
+    }
+
+
+def test_check_after_report_finds_nothing_that_differs(fake, bcre):
+    fake.claims.append(claim("NA", Verdict.UNRESOLVED))
+    assert bcre("report")[0] == 0
+    code, out, err = bcre("check")
+    assert (code, err) == (0, "")
+    assert "fake: first: agree\n" in out
+    assert "fake: second: disagree\n" in out
+    assert "fake: NA: unresolved\n" in out
+    assert "3 claims, 0 differ" in out
+
+
+@pytest.mark.parametrize(
+    ("now", "told"),
+    [
+        ([("first", "AGREE"), ("second", "AGREE")], "second: agree, recorded as: disagree"),
+        ([("first", "UNRESOLVED"), ("second", "DISAGREE")], "unresolved, recorded as: agree"),
+        ([("first", "AGREE")], "second: (none), recorded as: disagree"),
+        (
+            [("first", "AGREE"), ("second", "DISAGREE"), ("third", "AGREE")],
+            "third: agree, recorded as: (none)",
+        ),
+    ],
+)
+def test_check_ends_with_1_where_a_verdict_differs_from_the_recorded_one(fake, bcre, now, told):
+    bcre("report")
+    fake.claims = [claim(name, Verdict[verdict]) for name, verdict in now]
+    code, out, _ = bcre("check")
+    assert code == 1
+    assert told in out
+    assert ", 1 differ" in out
+
+
+def test_check_changes_no_file(fake, bcre, places):
+    bcre("report")
+    before = contents(places)
+    fake.claims = [claim("first", Verdict.DISAGREE)]
+    bcre("check")
+    assert contents(places) == before
+
+
+@pytest.mark.parametrize("text", [None, "", "a,b\n1,2\n", "study,claim\nfake,first\n"])
+def test_check_without_readable_verdicts_is_refused_in_one_line(fake, bcre, places, text):
+    bcre("report")
+    path = places / "reports/verdicts.csv"
+    path.unlink()
+    if text is not None:
+        path.write_text(text, encoding="utf-8")
+    code, out, err = bcre("check")
+    assert (code, out) == (2, "")
+    assert len(err.splitlines()) == 1
+    assert "verdicts.csv" in err
+
+
+def test_study_writes_its_report_and_prints_its_conclusions(fake, bcre, places):
+    code, out, _ = bcre("study", "fake")
+    assert code == 0
+    assert "fake: It holds. agree: 1 < 2." in out
+    assert sorted(path.name for path in (places / "reports").iterdir()) == ["fake"]
+
+
+def test_recorded_verdicts_are_of_the_four_words_and_each_claim_stands_once():
+    table = write.recorded_verdicts()
+    assert not table.duplicated(["study", "claim"]).any()
+    assert set(table["verdict"]) <= set(map(str, Verdict))
+    assert set(table["study"]) <= set(catalog.STUDIES)
