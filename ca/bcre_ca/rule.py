@@ -21,10 +21,17 @@ class UnstableStep(ValueError):  # noqa: N818 - named for what happened, as Stop
 
     def __init__(self, dt: float, largest: float, bound: str) -> None:
         super().__init__(
-            f"dt = {dt:.6g} cannot be stable: {bound}; the largest stable step is {largest:.6g}"
+            f"dt = {dt:.6g} cannot be stable: {bound}; "
+            f"the largest stable step is {_rounded_down(largest)}"
         )
         self.dt = dt
         self.largest = largest
+
+
+def _rounded_down(step: float) -> str:
+    """Six digits that do not exceed the step, so that what is recommended is accepted."""
+    text = f"{step:.6g}"
+    return text if float(text) <= step else f"{step * (1 - 5e-6):.6g}"
 
 
 class Coefficients(NamedTuple):

@@ -90,7 +90,7 @@ def _case(case: tuple[str, float, float]) -> Row:
 
 def _row(quantity: str, case: str, control: float, automaton: float, pde: float) -> Row:
     values = {"one_variable": control, "automaton": automaton, "pde": pde}
-    rounded = {name: significant(round(value, 6), 3) for name, value in values.items()}
+    rounded = {name: significant(round(value, 4) + 0.0, 3) for name, value in values.items()}
     return {"quantity": quantity, "case": case, **rounded}
 
 
