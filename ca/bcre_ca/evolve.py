@@ -18,6 +18,9 @@ Array = NDArray[np.float64]
 BLOCK = 32
 """Steps between two looks at the bounds when the step follows them."""
 
+DENORMAL = 1e-300
+"""Below this the sign of a layer is a matter of rounding among denormal numbers."""
+
 MARGIN = 0.8
 """Part of the bound that such a step takes, so that a block of growth seldom passes it."""
 
@@ -60,7 +63,7 @@ def evolve(
     """
     start = Pile(*_layers(h, R))
     require_stable(start, rule, ends)
-    end = advance(start, rule, steps, ends)
+    end = _advance_stably(start, rule, steps, ends)
     return end.h, end.R
 
 
@@ -72,8 +75,8 @@ def advance(pile: Pile, rule: Rule, steps: int, ends: Ends = "open") -> Pile:
     FloatingPointError
         naming the first cell that is no longer finite and the bound that was passed.
     """
-    if steps < 0:
-        raise ValueError(f"steps = {steps}: must be >= 0")
+    if isinstance(steps, bool) or steps != int(steps) or steps < 0:
+        raise ValueError(f"steps = {steps!r}: must be a whole number >= 0")
     if ends not in ("open", "periodic"):
         raise ValueError(f"ends = {ends!r}: must be 'open' or 'periodic'")
     h, R = pile.h.copy(), pile.R.copy()
@@ -97,9 +100,10 @@ def frames(
 ) -> Iterator[Pile]:
     """The pile at each of the ascending ``times``.
 
-    A fixed step is shortened as little as makes each time fall on a step. ``"auto"`` takes
-    :data:`MARGIN` of the largest stable step and looks again after every :data:`BLOCK` steps; a
-    block at whose end the bound has been passed is thrown away and taken in smaller steps.
+    A fixed step is taken as it is, but for a shorter one before a time that does not fall on a
+    step. ``"auto"`` takes :data:`MARGIN` of the largest stable step and looks again after every
+    :data:`BLOCK` steps; a block at whose end the bound has been passed is thrown away and taken
+    in smaller steps.
 
     Raises
     ------
@@ -129,19 +133,24 @@ def require_stable(pile: Pile, rule: Rule, ends: Ends) -> None:
 
 
 def _reach(pile: Pile, rule: Rule, time: float, ends: Ends) -> Pile:
+    """Whole steps of dt, and what is left of the way in one shorter step."""
     span = time - pile.t
-    steps = math.ceil(span / rule.dt * (1 - 1e-12))
-    if steps <= 0:
-        return replace(pile, t=time)
-    rule = replace(rule, dt=span / steps)
+    steps = math.floor(span / rule.dt * (1 + 1e-9))
+    end = _advance_stably(pile, rule, steps, ends)
+    left = span - steps * rule.dt
+    if left > 1e-9 * rule.dt:
+        end = _advance_stably(end, replace(rule, dt=left), 1, ends)
+    return replace(end, t=time)
+
+
+def _advance_stably(pile: Pile, rule: Rule, steps: int, ends: Ends) -> Pile:
     end = advance(pile, rule, steps, ends)
     try:
         require_stable(end, rule, ends)
     except UnstableStep as outgrown:
-        raise FloatingPointError(
-            f"the avalanche outgrew the step by t = {time:.6g}: {outgrown}"
-        ) from None
-    return replace(end, t=time)
+        message = f"the avalanche outgrew the step by t = {end.t:.6g}: {outgrown}"
+        raise FloatingPointError(message) from None
+    return end
 
 
 def _follow(pile: Pile, rule: Rule, time: float, ends: Ends) -> Pile:
@@ -182,4 +191,6 @@ def _layers(h: ArrayLike, R: ArrayLike) -> tuple[Array, Array]:
         )
     if not (np.isfinite(static).all() and np.isfinite(rolling).all()):
         raise ValueError("h and R must be finite")
+    if rolling.min() < -DENORMAL:
+        raise ValueError(f"R = {float(rolling.min())!r}: must be >= 0")
     return static, rolling

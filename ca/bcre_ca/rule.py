@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from numbers import Real
 from typing import Literal, NamedTuple, get_args
 
 from bcre_ca import theory
@@ -26,6 +27,10 @@ class UnstableStep(ValueError):  # noqa: N818 - named for what happened, as Stop
         )
         self.dt = dt
         self.largest = largest
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, Real) and math.isfinite(value)
 
 
 def _rounded_down(step: float) -> str:
@@ -85,11 +90,11 @@ class Rule:
     def __post_init__(self) -> None:
         for name in ("v", "D", "gamma", "Sc"):
             value = getattr(self, name)
-            if not (math.isfinite(value) and value >= 0):
+            if not (_is_number(value) and value >= 0):
                 raise ValueError(f"{name} = {value!r}: must be a finite number >= 0")
         for name in ("d", "dt"):
             value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0):
+            if not (_is_number(value) and value > 0):
                 raise ValueError(f"{name} = {value!r}: must be a finite number > 0")
         if self.sign not in get_args(Sign):
             raise ValueError(f"sign = {self.sign!r}: must be one of {get_args(Sign)}")

@@ -5,7 +5,7 @@ side, :mod:`bcre_pde.solve` for solving them, :mod:`bcre_pde.refine` for the err
 and :mod:`bcre_pde.theory` and :mod:`bcre_pde.exact` for what is known in closed form.
 """
 
-from bcre_pde.equation import BCRE, Material
+from bcre_pde.equation import BCRE, Material, largest_explicit_step
 from bcre_pde.fluxes import SMALLEST_GRID
 from bcre_pde.refine import Refined, grid_convergence_index, solve_refined
 from bcre_pde.solve import Problem, Solution, SolveError, solve
@@ -20,6 +20,7 @@ __all__ = [
     "Solution",
     "SolveError",
     "grid_convergence_index",
+    "largest_explicit_step",
     "second_critical_slope",
     "solve",
     "solve_refined",

@@ -117,14 +117,18 @@ class BCRE(PDEBase):  # type: ignore[misc]
         return self._rate
 
     def largest_explicit_step(self, largest_R: float) -> float:
-        """Step at which an explicit Runge-Kutta method of order 4 is still stable.
+        """:func:`largest_explicit_step` on this grid."""
+        return largest_explicit_step(self.material, self.dx, largest_R)
 
-        On the negative real axis the spectra of the stencils reach 32/15 for the drift v/dx and the
-        climb gamma R/dx, 272/45 for the spreads D/dx^2 and kappa R/dx^2, and the method 2.78.
-        """
-        material, dx = self.material, self.dx
-        exchanging = largest_R / (1 + material.gamma * largest_R / material.v_up)
-        drift = max(material.v, material.gamma * exchanging)
-        spread = max(material.D, material.kappa * exchanging)
-        rate = 32 / 15 * drift / dx + 272 / 45 * spread / dx**2
-        return 2.78 / rate if rate > 0 else math.inf
+
+def largest_explicit_step(material: Material, dx: float, largest_R: float) -> float:
+    """Step at which an explicit Runge-Kutta method of order 4 is still stable.
+
+    On the negative real axis the spectra of the stencils reach 32/15 for the drift v/dx and the
+    climb gamma R/dx, 272/45 for the spreads D/dx^2 and kappa R/dx^2, and the method 2.78.
+    """
+    exchanging = largest_R / (1 + material.gamma * largest_R / material.v_up)
+    drift = max(material.v, material.gamma * exchanging)
+    spread = max(material.D, material.kappa * exchanging)
+    rate = 32 / 15 * drift / dx + 272 / 45 * spread / dx**2
+    return 2.78 / rate if rate > 0 else math.inf

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import logging
 import math
 import time
 from collections.abc import Callable, Sequence
@@ -22,6 +23,9 @@ from bcre_pde.fluxes import SMALLEST_GRID
 Array = NDArray[np.float64]
 Ends = Literal["open", "periodic"]
 Method = Literal["runge-kutta", "RK45", "DOP853", "LSODA", "BDF"]
+
+# Its warnings on the time that trackers take would stand between a user and an error message.
+logging.getLogger("pde").setLevel(logging.ERROR)
 
 TOLERANCE = 1e-6
 """Default local error per step, relative to the largest rolling layer."""
@@ -113,7 +117,8 @@ def solve(
         the stable step; the others go through py-pde to SciPy's solver of that name.
     tolerance: local error per step, relative to the largest rolling layer (and, for SciPy's
         solvers, to each value).
-    stop: asked after every recorded time with the solution so far; True ends the solve there.
+    stop: asked after every recorded time with a solution of the first and the latest frame; True
+        ends the solve there.
 
     Raises
     ------
@@ -140,7 +145,7 @@ def solve(
             state = _advance(equation, state, (now, then), method, tolerance, record)
             now = then
         record.add(state, then, time.perf_counter() - began)
-        if stop is not None and stop(record.solution()):
+        if stop is not None and stop(record.solution(ends_only=True)):
             break
     return record.solution()
 
@@ -160,13 +165,14 @@ class _Recorder:
         self.frames.append((t, state.data.copy()))
         self.wall_s = wall_s
 
-    def solution(self) -> Solution:
-        data = np.array([frame for _, frame in self.frames])
+    def solution(self, *, ends_only: bool = False) -> Solution:
+        frames = [self.frames[0], self.frames[-1]] if ends_only else self.frames
+        data = np.array([frame for _, frame in frames])
         repose_line = self.problem.material.Sc * self.x
         return Solution(
             problem=self.problem,
             x=self.x,
-            t=np.array([t for t, _ in self.frames]),
+            t=np.array([t for t, _ in frames]),
             h=data[:, 0] - repose_line,
             R=data[:, 1],
             outflow=data[:, 2, -1] * self.problem.length,

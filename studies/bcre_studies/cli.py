@@ -42,7 +42,7 @@ def list_all() -> None:
 )
 @click.option(
     "--frames",
-    type=click.IntRange(min=2),
+    type=click.IntRange(2, 10_000),
     default=11,
     show_default=True,
     help="Frames, from t = 0 to the end.",
@@ -58,10 +58,12 @@ def run(
     out: Path | None,
 ) -> None:
     """Run SCENE, a built-in name or a TOML file; write profiles.csv and summary.json."""
+    from bcre_studies.report.files import require_writable
     from bcre_studies.run import run_scene, write_run
     from bcre_studies.scene import load
 
-    folder = out or Path("out") / Path(scene).stem
+    folder = Path("out") / Path(scene).stem if out is None else out
+    require_writable(folder, ("profiles.csv", "summary.json"))
     summary = write_run(run_scene(load(scene, assignments), model, frames), folder)
     for name, numbers in summary.items():
         facts = ", ".join(f"{key} {_short(value)}" for key, value in numbers.items())
@@ -131,7 +133,7 @@ def main() -> None:
     except click.ClickException as error:
         _refuse(error.format_message())
     except (click.Abort, KeyboardInterrupt):
-        click.echo("bcre: interrupted; what was finished before is kept", err=True)
+        click.echo("bcre: interrupted; every file written before is whole", err=True)
         sys.exit(130)
     except (ValueError, OSError) as error:
         _refuse(str(error))

@@ -42,7 +42,7 @@ WAVE_CELLS = 800
 """So that the shortest waves of the rough slope keep their height in BCRE."""
 CHANGED = 0.01
 TOLERANCE = 0.05
-WHY = "of the slope's excess at the start, as in the study of the repose slope"
+WHY = "of the slope's excess at the start: a twentieth of what there is to lose"
 
 Row = dict[str, Any]
 

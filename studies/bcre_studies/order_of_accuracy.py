@@ -139,7 +139,11 @@ def run() -> dict[str, pd.DataFrame]:
         _fit(dict(zip(KEYS, key, strict=True)), group)
         for key, group in table.groupby(list(KEYS), sort=False)
     ]
-    broken = [row for rows in each(_past_breaking, ["ca", "pde"], "past breaking") for row in rows]
+    broken = [
+        row
+        for rows in each(_past_breaking, ["ca", "pde"], "order_of_accuracy, t > t*")
+        for row in rows
+    ]
     return {
         "comparison": pd.DataFrame(fits),
         "errors": table.drop(columns="floor"),

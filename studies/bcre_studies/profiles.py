@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr
 from scipy.interpolate import CubicSpline
 
+from bcre_studies.tables import ProfileError, read_table, spline
+
 if TYPE_CHECKING:
     from bcre_studies.scene import Scene
 
@@ -24,10 +26,6 @@ Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
 NOISE_WAVES = 32
 """A rough surface is made of this many sines, the shortest one length/32 long."""
-
-
-class ProfileError(ValueError):
-    """A table that cannot serve as a profile."""
 
 
 class _Term(BaseModel):
@@ -84,7 +82,7 @@ class TableSurface(_Term):
     def load(self, key: str, folder: Path, scene: Scene, tilt: float) -> None:
         x, h = read_table(key, folder / self.file, "h", scene)
         self._tilt = tilt
-        self._spline = spline(x, h + tilt * x, scene)
+        self._spline = spline(f"{key}.file = {self.file!r}: h + Sc x", x, h + tilt * x, scene)
 
     def height(self, x: Array, scene: Scene) -> Array:
         assert self._spline is not None
@@ -132,7 +130,7 @@ class TableRolling(_Term):
                 f"{key}.file = {self.file!r}: R = {float(R[row])!r} at x = {float(x[row])!r}: "
                 "must be >= 0"
             )
-        self._spline = spline(x, R, scene)
+        self._spline = spline(f"{key}.file = {self.file!r}: R", x, R, scene)
 
     def layer(self, x: Array, scene: Scene) -> Array:
         assert self._spline is not None
@@ -141,51 +139,3 @@ class TableRolling(_Term):
 
 SurfaceTerm = Annotated[Incline | Sine | Noise | TableSurface, Field(discriminator="kind")]
 RollingTerm = Annotated[Gaussian | Uniform | TableRolling, Field(discriminator="kind")]
-
-
-def read_table(key: str, path: Path, column: str, scene: Scene) -> tuple[Array, Array]:
-    """The columns x and ``column`` of a CSV file; x must ascend and span the cell centres."""
-    import pandas as pd
-
-    def refuse(why: str) -> ProfileError:
-        return ProfileError(f"{key}.file = {path.name!r}: {why}")
-
-    if not path.is_file():
-        raise refuse("no such file; must be a CSV file, its path relative to the scene file")
-    try:
-        table = pd.read_csv(path, dtype=str)
-    except (ValueError, OSError) as error:
-        raise refuse(f"must be a CSV file: {' '.join(str(error).split())[:120]}") from None
-    if not {"x", column} <= set(table.columns):
-        raise refuse(f"has columns {', '.join(map(str, table.columns))}; must have x,{column}")
-    try:
-        x, values = (table[name].to_numpy(dtype=float) for name in ("x", column))
-    except (ValueError, TypeError):
-        raise refuse(f"x and {column} must be numbers") from None
-    if x.size < 4:
-        raise refuse(f"has {x.size} rows; must have at least 4")
-    if not (np.isfinite(x).all() and np.isfinite(values).all()):
-        raise refuse(f"x and {column} must be finite numbers in every row")
-    if not (np.diff(x) > 0).all():
-        row = int(np.argmax(~(np.diff(x) > 0))) + 1
-        raise refuse(f"x = {float(x[row])!r} in row {row + 1}: x must ascend")
-    length = scene.domain.length
-    low, high = (max(scene.d, gap) / 2 * (1 + 1e-9) for gap in (x[1] - x[0], x[-1] - x[-2]))
-    if x[0] > low or x[-1] < length - high:
-        raise refuse(
-            f"x runs from {x[0]:.6g} to {x[-1]:.6g}; must span 0 to {length:.6g} "
-            f"(half a cell, or half its own spacing, may be missing at either end)"
-        )
-    return x, values
-
-
-def spline(x: Array, values: Array, scene: Scene) -> CubicSpline:
-    """Cubic spline through the table, closed over the period where ends are periodic."""
-    if scene.domain.ends == "open":
-        return CubicSpline(x, values)
-    length = scene.domain.length
-    inside = x < x[0] + length * (1 - 1e-9)
-    around = np.append(x[inside], x[0] + length)
-    return CubicSpline(
-        around, np.append(values[inside], values[0]), bc_type="periodic", extrapolate="periodic"
-    )

@@ -20,13 +20,24 @@ from bcre_studies.compare import SHARE, sample
 from bcre_studies.profiles import Array
 from bcre_studies.report.files import replace_text
 from bcre_studies.scene import Scene, SceneError
-from bcre_studies.simulate import Run, as_run, frame_times, problem_of, profiles, run_automaton
+from bcre_studies.simulate import (
+    Run,
+    as_run,
+    frame_times,
+    problem_of,
+    profiles,
+    rule_of,
+    run_automaton,
+)
 
 ALONE = 1e-3
 """Relative error that the PDE is refined to where there is no automaton to compare it with."""
 
 COARSEST = 100
 FINEST = 1600
+
+MOST_STEPS = {"ca": 10**9, "pde": 10**8}
+"""A run that would take more is refused: it would not end within a working day."""
 
 
 def run_scene(scene: Scene, model: Literal["ca", "pde", "both"], frames: int) -> list[Run]:
@@ -45,10 +56,16 @@ def run_scene(scene: Scene, model: Literal["ca", "pde", "both"], frames: int) ->
             np.errstate(over="raise", divide="raise", invalid="raise"),
             warnings.catch_warnings(action="ignore", category=UserWarning),  # SciPy's, on tolerance
         ):
+            _, R = scene.initial(scene.centres())  # tells an overflow from an unstable step
             if model in ("ca", "both"):
-                scene.initial(scene.centres())  # tells an overflow here from an unstable step
+                _refuse_endless(scene, "ca", scene.time.until / rule_of(scene).dt)
                 runs.append(_run_ca(scene, times))
             if model in ("pde", "both"):
+                grid = scene.solver.cells or COARSEST
+                bound = bcre_pde.largest_explicit_step(
+                    problem_of(scene).material, scene.domain.length / grid, float(R.max())
+                )
+                _refuse_endless(scene, "pde", scene.time.until / bound)
                 runs.append(_run_pde(scene, times, runs[0] if runs else None))
     except bcre_pde.SolveError as failure:
         raise SceneError(
@@ -68,6 +85,16 @@ def _run_ca(scene: Scene, times: Sequence[float]) -> Run:
     except (bcre_ca.UnstableStep, FloatingPointError) as failure:
         step = scene.time.step
         raise SceneError(f"time.step = {step!r}: {failure}, or be 'auto'") from None
+
+
+def _refuse_endless(scene: Scene, model: str, steps: float) -> None:
+    if steps > MOST_STEPS[model]:
+        fixed = model == "ca" and scene.time.step != "auto"
+        key, value = ("step", scene.time.step) if fixed else ("until", scene.time.until)
+        raise SceneError(
+            f"time.{key} = {value!r}: with this material and grid it would take {steps:.1g} steps "
+            f"of the {model}; must take at most {MOST_STEPS[model]:.0g}"
+        )
 
 
 def _most_extreme(scene: Scene) -> str:

@@ -17,13 +17,13 @@ from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError,
 
 from bcre_studies.profiles import (
     Array,
-    ProfileError,
     RollingTerm,
     Sine,
     SurfaceTerm,
     TableRolling,
     TableSurface,
 )
+from bcre_studies.tables import ProfileError
 
 BUILT_IN = Path(__file__).parent / "scenes"
 
@@ -102,7 +102,7 @@ class Scene(_Table):
             if not isinstance(term, Sine):
                 continue
             waves = self.domain.length / term.wavelength
-            if abs(waves - round(waves)) > 1e-9 or round(waves) < 1:
+            if not 0.5 < waves < 1e9 or abs(waves - round(waves)) > 1e-9:
                 raise ValueError(
                     f"surface.{index}.wavelength = {term.wavelength!r}: with periodic ends a whole "
                     f"number of waves must fit into domain.length = {self.domain.length!r}"
@@ -158,7 +158,7 @@ def load(source: str | Path, overrides: Sequence[str] = ()) -> Scene:
     text, folder = _read(path), path.parent
     try:
         data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
         raise SceneError(f"{source}: not a TOML file: {error}") from None
     for assignment in overrides:
         key, separator, value = assignment.partition("=")
@@ -208,7 +208,7 @@ def _assign(data: dict[str, Any], key: str, value: Any) -> None:
     place: Any = data
     for part in parts[:-1]:
         if isinstance(place, list):
-            if not part.isdigit() or int(part) >= len(place):
+            if not (part.isascii() and part.isdigit()) or int(part) >= len(place):
                 raise SceneError(f"{key} = {value!r}: {part} must be one of 0..{len(place) - 1}")
             place = place[int(part)]
         elif isinstance(place, dict):
@@ -223,7 +223,7 @@ def _assign(data: dict[str, Any], key: str, value: Any) -> None:
 def _toml_value(text: str) -> Any:
     try:
         parsed = tomllib.loads(f"value = {text}")
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):
         return text
     return parsed["value"] if len(parsed) == 1 else text
 
@@ -274,9 +274,19 @@ def _one_line(failure: ValidationError) -> str:
         return f"{key}: missing; this key is required"
     if error["type"].startswith("union_tag"):
         kind = error["input"].get("kind") if isinstance(error["input"], dict) else error["input"]
-        expected = error.get("ctx", {}).get("expected_tags", "a table with a kind")
-        return f"{key}.kind = {kind!r}: must be one of {expected}"
+        surfaces = key.startswith("surface")
+        expected = (
+            "'incline', 'sine', 'noise', 'table'" if surfaces else "'gaussian', 'uniform', 'table'"
+        )
+        return f"{key}.kind = {_short(kind)}: must be one of {expected}"
     if error["type"] == "extra_forbidden":
-        return f"{key} = {error['input']!r}: no such key is allowed here"
+        return f"{key} = {_short(error['input'])}: no such key is allowed here"
+    if error["type"] == "tuple_type":
+        return f"{key} = {_short(error['input'])}: must be a list of tables, [[{key}]]"
     allowed = message.replace("Input should be", "must be")
-    return f"{key} = {error['input']!r}: {allowed}"
+    return f"{key} = {_short(error['input'])}: {allowed}"
+
+
+def _short(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 80 else f"{text[:77]}..."

@@ -100,7 +100,7 @@ def test_layers_that_make_no_pile_are_refused(h, R, message):
 
 
 def test_negative_steps_and_unknown_ends_are_refused_by_name():
-    with pytest.raises(ValueError, match=r"^steps = -1: must be >= 0"):
+    with pytest.raises(ValueError, match=r"^steps = -1: must be a whole number >= 0"):
         evolve([1.0], [1.0], FIGURE_1, -1)
     with pytest.raises(ValueError, match=r"^ends = 'closed': must be"):
         evolve([1.0], [1.0], FIGURE_1, 1, "closed")
@@ -188,3 +188,34 @@ def test_single_small_avalanche_strips_an_even_layer_and_leaves_the_slope():
     slope = -np.polyfit(x[40:95], end.h[40:95], 1)[0]
     assert slope == pytest.approx(0.8, abs=1e-3)
     assert (end.h < pile.h)[40:95].all()
+
+
+@pytest.mark.parametrize("steps", [2.5, True])
+def test_steps_must_be_a_whole_number(steps):
+    with pytest.raises(ValueError, match=r"steps = .*whole number"):
+        evolve(np.zeros(3), np.zeros(3), Rule(0.1, 0.1, 0.01, 0.5, 1.0, 0.4), steps)
+
+
+def test_negative_layer_is_refused_with_its_value():
+    with pytest.raises(ValueError, match=r"R = -0.5: must be >= 0"):
+        evolve(np.zeros(3), np.array([0.0, -0.5, 0.0]), Rule(0.1, 0.1, 0.01, 0.5, 1.0, 0.4), 1)
+
+
+def test_evolve_refuses_an_end_that_outgrew_the_step_though_it_is_finite():
+    x = np.arange(100) + 0.5
+    h, R = 3.7 * (100 - x), np.exp(-(((x - 85) / 3) ** 2))
+    with pytest.raises(FloatingPointError, match="outgrew the step"):
+        evolve(h, R, Rule(0.1, 0.1, 0.01, 0.5, 1.0, 1.0), 320)
+
+
+def test_frames_do_not_change_a_fixed_step():
+    x = np.arange(50) + 0.5
+    start = Pile(0.48 * (50 - x), np.exp(-(((x - 20) / 4) ** 2)))
+    rule = Rule(2.5, 0.1, 0.01, 0.5, 1.0, 0.2)
+    (whole,) = frames(start, rule, [8.0], step=0.2)
+    *_, often = frames(start, rule, [2.0, 4.0, 6.0, 8.0], step=0.2)
+    assert whole.steps == often.steps == 40
+    assert np.abs(whole.R - often.R).max() == 0
+    *_, between = frames(start, rule, [0.7, 8.0], step=0.2)
+    assert between.steps == 41
+    assert between.R.sum() == pytest.approx(whole.R.sum(), rel=1e-3)

@@ -335,8 +335,8 @@ def test_place_or_slope_that_is_no_finite_number_is_refused(bcre, key):
         (["."], ["no such scene"]),
         ([""], ["no such scene"]),
         (["figure2", "--model", "ode"], ["--model", "'ode'", "'both'"]),
-        (["figure2", "--frames", "1"], ["--frames", "1", "x>=2"]),
-        (["figure2", "--frames", "-3"], ["--frames", "-3", "x>=2"]),
+        (["figure2", "--frames", "1"], ["--frames", "1", "2<=x"]),
+        (["figure2", "--frames", "-3"], ["--frames", "-3", "2<=x"]),
         (["figure2", "--frames", "2.5"], ["--frames", "2.5"]),
         (["figure2", "--frames", "many"], ["--frames", "'many'"]),
         (["figure2", "--set", "v"], ["--set", "'v'", "key=value"]),
@@ -399,13 +399,31 @@ def test_number_that_cannot_be_computed_with_is_named(bcre, options, words):
 
 @pytest.mark.parametrize(
     "changes",
-    [["v=1e300"], ["gamma=1e300"], ["tolerance=1e-300"], ["method=LSODA", "tolerance=1e-300"]],
+    [["tolerance=1e-300"], ["method=LSODA", "tolerance=1e-300"]],
 )
 def test_solver_that_gives_up_is_named_with_its_tolerance(bcre, changes):
     options = [word for change in changes for word in ("--set", change)]
     ended = bcre("run", "figure2", "--model", "pde", "--set", "until=0.1", *options)
     refused(ended, "solver.method = ", "solver.tolerance = ")
     assert files() == []
+
+
+@pytest.mark.parametrize(
+    ("model", "change"),
+    [("pde", "v=1e300"), ("pde", "gamma=1e300"), ("pde", "until=1e12"), ("ca", "step=1e-12")],
+)
+def test_run_that_would_not_end_is_refused_with_its_steps(bcre, model, change):
+    ended = bcre("run", "figure2", "--model", model, "--set", change)
+    refused(ended, "time.", f"steps of the {model}", "must take at most")
+    assert files() == []
+
+
+@pytest.mark.parametrize("target", ["taken", "taken/below", "folder"])
+def test_folder_that_cannot_be_written_is_refused_before_anything_is_run(bcre, target):
+    Path("taken").write_text("a file")
+    Path("folder/profiles.csv").mkdir(parents=True)
+    refused(bcre("run", "figure2", "--model", "ca", "--out", target), "out", target)
+    assert files() == ["folder", "folder/profiles.csv", "taken"]
 
 
 @pytest.mark.parametrize("cells", [100, 170])
@@ -445,7 +463,8 @@ def test_step_that_the_avalanche_outgrows_is_refused_though_stable_at_the_start(
         ),
         (lambda: Path("start.csv").write_text("", encoding="utf-8"), ["start.csv", "CSV"]),
         (lambda: write_scene(x=np.arange(40)[::-1]), ["start.csv", "x = 38.0", "must ascend"]),
-        (lambda: write_scene(h=np.full(40, np.nan)), ["start.csv", "finite"]),
+        (lambda: write_scene(h=np.full(40, np.nan)), ["start.csv", "must be numbers"]),
+        (lambda: write_scene(h=np.full(40, np.inf)), ["start.csv", "finite"]),
         (lambda: write_scene(R=np.full(40, -0.5)), ["rolling.0.file", "-0.5", ">= 0"]),
         (lambda: write_scene(x=np.linspace(3, 9, 40)), ["start.csv", "must span"]),
         (lambda: write_scene(SCENE.replace("v = 0.6", "")), ["material.v", "missing"]),

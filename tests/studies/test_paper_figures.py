@@ -1,5 +1,6 @@
 """The paper's figures: how far the automaton is from BCRE, and from BCRE with its own diffusion."""
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -79,9 +80,21 @@ def test_figures_are_refined_at_a_fixed_courant_number(refinement):
 def table(verdicts):
     """Made-up rows, coarse and fine, with the given verdicts."""
     rows = [
-        {"case": name, "difference": 0.5, "difference_effective": 0.01, "verdict": verdict}
+        {
+            "quantity": paper_figures.PROFILE,
+            "case": name,
+            "difference": 0.5,
+            "difference_effective": 0.01,
+            "verdict": verdict,
+        }
         for name, pair in zip(paper_figures.FIGURES, verdicts, strict=True)
         for verdict in pair
+    ]
+    rows += [
+        {"quantity": paper_figures.CLIMB, "case": name, "verdict": "unresolved"}
+        | dict.fromkeys(("automaton", "pde", "pde_error"), 1.0)
+        | dict.fromkeys(("pde_effective", "pde_effective_error"), 1.0)
+        for name in paper_figures.CLIMBS
     ]
     return {"comparison": pd.DataFrame(rows)}
 
@@ -93,9 +106,24 @@ def test_claim_of_a_figure_is_judged_on_the_papers_own_cells():
         "figure1 profile",
         "figure2 profile",
         "figure3 profile",
+        "figure1 climb",
+        "figure1_between climb",
     ]
     assert [claim.verdict for claim in claims] == [
         Verdict.UNRESOLVED,
         Verdict.DISAGREE,
         Verdict.AGREE,
+        Verdict.UNRESOLVED,
+        Verdict.UNRESOLVED,
     ]
+
+
+def test_climb_time_is_that_of_a_scarp_of_constant_speed():
+    x, t = np.arange(100) + 0.5, np.linspace(0, 200, 201)
+    place = 85.5 - 0.5 * t[:, None]
+    depth = 50 * np.clip((x - place) / 4 + 0.5, 0, 1) * np.minimum(t[:, None] / 5, 1)
+    R = np.tile(np.exp(-(((x - 85.5) / 3) ** 2)), (t.size, 1))
+    scene = paper_figures.load("figure1")
+    h = scene.initial(x)[0] - depth
+    run = paper_figures.Run("ca", scene, x, t, h, R, 0 * t, 1, 0.0)
+    assert paper_figures.climb_time(run) == pytest.approx(0.8 * 85.5 / 0.5, rel=0.02)

@@ -378,3 +378,48 @@ def test_scene_without_surface_or_rolling_terms_is_flat_and_dry(write):
     h, R = scene.initial(scene.centres())
     assert not h.any()
     assert not R.any()
+
+
+PERIODIC = TABLE_SCENE.replace('ends = "open"', 'ends = "periodic"')
+PLACES = np.arange(20) + 0.5
+
+
+@pytest.mark.parametrize(
+    ("x", "h"),
+    [
+        (PLACES, 0.7 * (20 - PLACES)),
+        (np.arange(21.0), 10 - 0.5 * np.arange(21) + np.eye(21)[20] * 5),
+    ],
+)
+def test_periodic_table_that_does_not_close_is_refused(write, x, h):
+    message = refusal(write(PERIODIC, table(x, h, np.ones_like(x))))
+    assert "must close over domain.length" in message
+    assert "surface.0.file" in message
+
+
+def test_periodic_table_that_closes_is_accepted(write):
+    u = 0.3 * np.sin(2 * np.pi * PLACES / 20)
+    scene = load(write(PERIODIC, table(PLACES, u - 0.5 * PLACES, np.ones(20))))
+    assert scene.initial(PLACES)[0] == pytest.approx(u - 0.5 * PLACES, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        ("x,h\n1,0.5,3\n2,1.5,3\n", "fields"),
+        ("x,h,h\n0.5,3,3\n", "each once"),
+        ("x,x,h\n0.5,3,3\n", "each once"),
+        ("x,h\n0.5,1e308\n1.5,1\n2.5,1\n3.5,1\n", "below 1e+100"),
+    ],
+)
+def test_ambiguous_or_extreme_table_is_refused(write, text, word):
+    assert word in refusal(write(TABLE_SCENE, text))
+
+
+def test_wave_too_short_for_any_number_and_nesting_too_deep_are_refused(write):
+    short = SCENE.replace('ends = "open"', 'ends = "periodic"').replace(
+        "slope = 0.7", "slope = 0.5"
+    )
+    short += '[[surface]]\nkind = "sine"\namplitude = 0.1\nwavelength = 1e-320\n'
+    assert "wavelength" in refusal(write(short))
+    assert "TOML" in refusal(write("a = " + "[" * 3000 + "]" * 3000))

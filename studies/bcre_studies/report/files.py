@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 _HERE = Path(__file__).resolve().parents[3]
@@ -28,6 +28,18 @@ def replace_file(path: Path, write: Callable[[Path], None]) -> None:
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def require_writable(folder: Path, names: Sequence[str]) -> None:
+    """Raise ValueError where files of these names could not be written into the folder."""
+    present = folder.absolute()
+    while not present.exists():
+        present = present.parent
+    if not present.is_dir() or not os.access(present, os.W_OK):
+        raise ValueError(f"--out = {str(folder)!r}: {present} must be a folder that can be written")
+    for name in names:
+        if (folder / name).is_dir():
+            raise ValueError(f"--out = {str(folder)!r}: {name} in it must not be a folder")
 
 
 def replace_text(path: Path, text: str) -> None:

@@ -72,7 +72,7 @@ def legend(figure: Figure, models: Iterable[str], *, markers: bool = False) -> N
         look = START if model == "start" else MODELS[model]
         marker = MARKERS.get(model, "") if markers else ""
         handles.append(Line2D([], [], label=LABELS[model], marker=marker, **look))
-    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), handlelength=3.4)
 
 
 def save(figure: Figure, path: Path) -> None:
