@@ -89,11 +89,10 @@ def _run_ca(scene: Scene, times: Sequence[float]) -> Run:
 
 def _refuse_endless(scene: Scene, model: str, steps: float) -> None:
     if steps > MOST_STEPS[model]:
-        fixed = model == "ca" and scene.time.step != "auto"
-        key, value = ("step", scene.time.step) if fixed else ("until", scene.time.until)
+        until, step = scene.time.until, scene.time.step
         raise SceneError(
-            f"time.{key} = {value!r}: with this material and grid it would take {steps:.1g} steps "
-            f"of the {model}; must take at most {MOST_STEPS[model]:.0g}"
+            f"time.until = {until!r} with time.step = {step!r}: would take {steps:.1g} steps of the "
+            f"{model} with this material and grid; must take at most {MOST_STEPS[model]:.0g}"
         )
 
 
