@@ -91,8 +91,8 @@ def _refuse_endless(scene: Scene, model: str, steps: float) -> None:
     if steps > MOST_STEPS[model]:
         until, step = scene.time.until, scene.time.step
         raise SceneError(
-            f"time.until = {until!r} with time.step = {step!r}: would take {steps:.1g} steps of the "
-            f"{model} with this material and grid; must take at most {MOST_STEPS[model]:.0g}"
+            f"time.until = {until!r} with time.step = {step!r}: would take {steps:.1g} steps of "
+            f"the {model} with this material and grid; must take at most {MOST_STEPS[model]:.0g}"
         )
 
 
