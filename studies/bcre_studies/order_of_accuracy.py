@@ -316,6 +316,7 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
             guide = first["L1"] * (line["cells"] / first["cells"]) ** -slope
             axis.loglog(line["cells"], guide, color="0.6", linewidth=0.8)
         axis.set_title(label, loc="left")
+        axis.xaxis.set_minor_formatter("")
         axis.set_xlabel("cells")
         axis.set_ylabel("L1 error of R / spread of R")
     for axis in axes[len(labels) :]:

@@ -327,7 +327,11 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
     table = tables["comparison"]
     figure, axes = style.panels(2, 2)
     labels = ("S - Sc", "gamma R0 (length/time)", "scarp height H (length)")
-    titles = ("(a) rolling front", "(b) surface wave, S = Sc", "(c) scarp")
+    titles = (
+        "(a) rolling front",
+        "(b) surface wave, S = Sc",
+        "(c) scarp; line: sharp, c = gamma H - v",
+    )
     for axis, quantity, label, title in zip(axes[:3], QUANTITIES, labels, titles, strict=False):
         _closed_forms(axis, quantity)
         for d in CELLS:
