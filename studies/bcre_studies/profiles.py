@@ -28,11 +28,13 @@ NOISE_WAVES = 32
 """A rough surface is made of this many sines, the shortest one length/32 long."""
 
 
-class _Term(BaseModel):
+class StrictTable(BaseModel):
+    """A table of a scene file: no unknown keys, no converted types."""
+
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
 
-class Incline(_Term):
+class Incline(StrictTable):
     """h = slope (length - x): zero at the foot."""
 
     kind: Literal["incline"]
@@ -42,7 +44,7 @@ class Incline(_Term):
         return self.slope * (scene.domain.length - x)
 
 
-class Sine(_Term):
+class Sine(StrictTable):
     """h = amplitude sin(2 pi x/wavelength)."""
 
     kind: Literal["sine"]
@@ -53,7 +55,7 @@ class Sine(_Term):
         return np.asarray(self.amplitude * np.sin(2 * np.pi * x / self.wavelength))
 
 
-class Noise(_Term):
+class Noise(StrictTable):
     """A sum of 32 sines of wavelengths length/1 ... length/32, equal amplitudes, random phases.
 
     ``amplitude`` is its root mean square over the domain. Band-limited, so that it is the same
@@ -71,7 +73,7 @@ class Noise(_Term):
         return np.asarray(self.amplitude * np.sqrt(2 / NOISE_WAVES) * np.sin(angle).sum(axis=-1))
 
 
-class TableSurface(_Term):
+class TableSurface(StrictTable):
     """h from a CSV file with columns x,h: a cubic spline of the height above the repose line."""
 
     kind: Literal["table"]
@@ -89,7 +91,7 @@ class TableSurface(_Term):
         return np.asarray(self._spline(x)) - self._tilt * x
 
 
-class Gaussian(_Term):
+class Gaussian(StrictTable):
     """R = amplitude exp(-((x - centre)/width)^2), the nearest image where ends are periodic."""
 
     kind: Literal["gaussian"]
@@ -105,7 +107,7 @@ class Gaussian(_Term):
         return np.asarray(self.amplitude * np.exp(-((distance / self.width) ** 2)))
 
 
-class Uniform(_Term):
+class Uniform(StrictTable):
     """R = amplitude everywhere."""
 
     kind: Literal["uniform"]
@@ -115,7 +117,7 @@ class Uniform(_Term):
         return np.full_like(x, self.amplitude)
 
 
-class TableRolling(_Term):
+class TableRolling(StrictTable):
     """R from a CSV file with columns x,R: a cubic spline, cut off at zero between its points."""
 
     kind: Literal["table"]

@@ -13,12 +13,15 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError, model_validator
+from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
 from bcre_studies.profiles import (
     Array,
+    NonNegative,
+    Positive,
     RollingTerm,
     Sine,
+    StrictTable,
     SurfaceTerm,
     TableRolling,
     TableSurface,
@@ -27,19 +30,12 @@ from bcre_studies.tables import ProfileError
 
 BUILT_IN = Path(__file__).parent / "scenes"
 
-NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-
 
 class SceneError(ValueError):
     """A scene that cannot be run; its text is one line naming key, value and what is allowed."""
 
 
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
-
-
-class SceneMaterial(_Table):
+class SceneMaterial(StrictTable):
     """``[material]``: the coefficients of both models; kappa is BCRE's curvature term."""
 
     v: NonNegative
@@ -49,7 +45,7 @@ class SceneMaterial(_Table):
     kappa: NonNegative = 0.0
 
 
-class Domain(_Table):
+class Domain(StrictTable):
     """``[domain]``: 0 <= x <= length; ``cells`` are the automaton's, d = length/cells."""
 
     length: Positive
@@ -57,14 +53,14 @@ class Domain(_Table):
     ends: Literal["open", "periodic"]
 
 
-class Time(_Table):
+class Time(StrictTable):
     """``[time]``: from 0 to ``until``; ``step`` is the automaton's dt, or "auto"."""
 
     until: Positive
     step: Positive | Literal["auto"] = "auto"
 
 
-class Solver(_Table):
+class Solver(StrictTable):
     """``[solver]``: the PDE's grid and method; left out, it refines until its error is small."""
 
     cells: Annotated[int, Field(ge=8, le=1_000_000)] | None = None
@@ -72,7 +68,7 @@ class Solver(_Table):
     tolerance: Annotated[float, Field(gt=0, lt=1)] = 1e-6
 
 
-class Scene(_Table):
+class Scene(StrictTable):
     """A whole scene file."""
 
     title: str
@@ -181,7 +177,7 @@ def built_in_names() -> list[str]:
     return sorted(path.stem for path in BUILT_IN.glob("*.toml"))
 
 
-SECTIONS: dict[str, type[_Table]] = {
+SECTIONS: dict[str, type[StrictTable]] = {
     "material": SceneMaterial,
     "domain": Domain,
     "time": Time,
