@@ -3,7 +3,7 @@ SHELL := /bin/sh
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: help install reports test check lint clean
+.PHONY: help install reports test bench check lint clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-9s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -22,6 +22,12 @@ reports: install ## run all studies, write reports/
 
 test: install ## run the tests
 	$(BIN)/python -m pytest
+
+bench: install ## time the automaton against what would be used instead (under 3 minutes)
+	@$(BIN)/python -c 'import fipy' 2>/dev/null \
+		|| $(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-bench.lock \
+		|| echo 'FiPy cannot be installed here: its benchmarks are skipped' >&2
+	$(BIN)/python -m pytest -o addopts='--import-mode=importlib -q --strict-markers' -o python_files='bench_*.py' tests/benchmarks
 
 check: install ## judge all claims again; fails where a verdict differs from reports/verdicts.csv
 	$(BIN)/bcre check
