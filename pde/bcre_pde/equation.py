@@ -4,7 +4,7 @@ r"""The BCRE equations as a py-pde equation.
     E = gamma R (S - Sc) - kappa R d2h/dx2,   S = -dh/dx
 
 (Bouchaud, Cates, Prakash, Edwards, J. Phys. I France 4 (1994) 1383), in u = h + Sc x, the height
-above the repose line: E = -R (gamma u_x + kappa u_xx).
+above the repose line: E = -R (gamma u_x + kappa u_xx), the law of :mod:`bcre_pde.exchange`.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from pde import CartesianGrid, FieldCollection, PDEBase, ScalarField
 
 from bcre_pde import fluxes
+from bcre_pde.exchange import exchanging
 
 Array = NDArray[np.float64]
 
@@ -49,6 +50,11 @@ class Material:
     kappa: float = 0.0
     v_up: float = math.inf
 
+    @property
+    def saturation(self) -> float | None:
+        """gamma/v_up, or None for the linear exchange law."""
+        return None if math.isinf(self.v_up) else self.gamma / self.v_up
+
     def __post_init__(self) -> None:
         for name in ("v", "D", "gamma", "Sc", "kappa"):
             value = getattr(self, name)
@@ -69,22 +75,35 @@ class BCRE(PDEBase):  # type: ignore[misc]
     ----------
     material: the coefficients.
     grid: a line of N >= 8 cells from x = 0, periodic or not.
+    most_evaluations: how often the right-hand side may be evaluated.
     """
 
     explicit_time_dependence = False
 
-    def __init__(self, material: Material, grid: CartesianGrid) -> None:
+    def __init__(
+        self, material: Material, grid: CartesianGrid, most_evaluations: float = math.inf
+    ) -> None:
         super().__init__()
         (cells,) = grid.shape
         if cells < fluxes.SMALLEST_GRID:
             raise ValueError(f"cells = {cells}: BCRE needs at least {fluxes.SMALLEST_GRID} cells")
         self.material = material
-        self.evaluations = 0
         self.dx = float(grid.discretization[0])
-        self._periodic = bool(grid.periodic[0])
-        self._padded = np.empty((2, cells + 2 * fluxes.GHOSTS))
-        self._faces = np.empty((2, cells + 1))
+        self.evaluations = 0
+        self.most_evaluations = most_evaluations
+        self.last_time = 0.0
+        self.last_layers = np.zeros((3, cells))
         self._rate = self.state(grid, np.zeros(cells), np.zeros(cells))
+        self._scratch = np.empty((2, cells + 2 * fluxes.GHOSTS)), np.empty((2, cells + 1))
+        self._coefficients = (
+            material.v,
+            material.D,
+            material.gamma,
+            material.kappa or None,
+            self.dx,
+            bool(grid.periodic[0]),
+            material.saturation,
+        )
 
     @staticmethod
     def state(grid: CartesianGrid, u: Array, R: Array, u_foot: float = 0.0) -> FieldCollection:
@@ -99,22 +118,30 @@ class BCRE(PDEBase):  # type: ignore[misc]
 
     def evolution_rate(self, state: FieldCollection, t: float = 0) -> FieldCollection:
         """The right-hand side, in one field that every call overwrites (py-pde copies it)."""
-        material = self.material
-        self.evaluations += 1
-        fluxes.rate(
-            state.data,
-            self._rate.data,
-            self._padded,
-            self._faces,
-            material.v,
-            material.D,
-            material.gamma,
-            material.kappa,
-            self.dx,
-            self._periodic,
-            material.gamma / material.v_up,
-        )
+        self.write_rate(state.data, self._rate.data, t)
         return self._rate
+
+    def write_rate(self, layers: Array, out: Array, t: float = 0) -> None:
+        """Write the time derivative of the rows u, R and ends, shape (3, N), into ``out``.
+
+        Raises
+        ------
+        RuntimeError
+            where it has been asked for more often than ``most_evaluations``.
+        """
+        self.evaluations += 1
+        self.last_time = t
+        np.copyto(self.last_layers, layers)
+        if self.evaluations > self.most_evaluations:
+            raise RuntimeError(
+                f"the right-hand side was evaluated {self.most_evaluations:.6g} times, the most "
+                "that is allowed"
+            )
+        self.rate(layers, out)
+
+    def rate(self, layers: Array, out: Array) -> None:
+        """:meth:`write_rate`, not counted."""
+        fluxes.rate(layers, out, *self._scratch, *self._coefficients)
 
     def largest_explicit_step(self, largest_R: float) -> float:
         """:func:`largest_explicit_step` on this grid."""
@@ -127,8 +154,8 @@ def largest_explicit_step(material: Material, dx: float, largest_R: float) -> fl
     On the negative real axis the spectra of the stencils reach 32/15 for the drift v/dx and the
     climb gamma R/dx, 272/45 for the spreads D/dx^2 and kappa R/dx^2, and the method 2.78.
     """
-    exchanging = largest_R / (1 + material.gamma * largest_R / material.v_up)
-    drift = max(material.v, material.gamma * exchanging)
-    spread = max(material.D, material.kappa * exchanging)
+    wet = exchanging.py_func(largest_R, material.saturation)
+    drift = max(material.v, material.gamma * wet)
+    spread = max(material.D, material.kappa * wet)
     rate = 32 / 15 * drift / dx + 272 / 45 * spread / dx**2
     return 2.78 / rate if rate > 0 else math.inf

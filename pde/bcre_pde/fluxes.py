@@ -10,9 +10,7 @@ With u = h + Sc x the system is
 * R_x at a face and u_xx in a cell are central, order 6.
 
 The same E leaves u and enters R, and F_x is a difference of face values, so dx sum(u + R) changes
-by the flux through the ends alone. Where R has undershot zero, nothing is exchanged: E uses
-max(R, 0), since a negative layer would otherwise grow on any slope above repose. The saturated law
-for thick flows puts R/(1 + gamma R/v_up) for R in E, so that the wave climbs at v_up at most.
+by the flux through the ends alone. E itself is the law of :mod:`bcre_pde.exchange`.
 
 Open ends: no flux through the top, and u_xx = 0 there; the advective flux v R through the foot,
 beyond which the surface goes on at repose: u_x = 0 on the foot, so that u there obeys
@@ -25,13 +23,17 @@ from __future__ import annotations
 
 import numba
 
+from bcre_pde.exchange import exchange, exchanging
+
 GHOSTS = 3
 SMALLEST_GRID = 8
 
+_compiled = numba.njit(cache=True, error_model="numpy")
 
-@numba.njit(cache=True, error_model="numpy")
+
+@_compiled
 def rate(  # type: ignore[no-untyped-def]
-    state, out, padded, faces, v, D, gamma, kappa, dx, periodic, saturation=0.0
+    state, out, padded, faces, v, D, gamma, kappa, dx, periodic, saturation
 ):
     """Write the time derivative of ``state`` into ``out``.
 
@@ -40,9 +42,9 @@ def rate(  # type: ignore[no-untyped-def]
     state, out: shape (3, N): u; R; and of the third row, used for open ends only, the first cell
         holds u on the foot and the last one the outflow so far divided by N dx.
     padded, faces: scratch of shapes (2, N + 6) and (2, N + 1).
-    v, D, gamma, kappa: the material; dx the cell length.
+    v, D, gamma, kappa: the material, kappa None without curvature term; dx the cell length.
     periodic: whether the ends are joined.
-    saturation: gamma/v_up, or 0 for the linear exchange law.
+    saturation: gamma/v_up, or None for the linear exchange law.
     """
     n = state.shape[1]
     _pad(state, padded, n)
@@ -55,12 +57,13 @@ def rate(  # type: ignore[no-untyped-def]
     if not periodic:
         foot = state[2, 0]
         _change_at_open_ends(state[0], state[1], flux, out, gamma, kappa, dx, n, foot, saturation)
-        exchanging = _exchanging(state[1, n - 1], saturation)
-        out[2, 0] = kappa * exchanging * _curvature_on_foot(state[0], foot, dx, n)
+        if kappa is not None:
+            curvature = _curvature_on_foot(state[0], foot, dx, n)
+            out[2, 0] = kappa * exchanging(state[1, n - 1], saturation) * curvature
         out[2, n - 1] = flux[n] / (n * dx)
 
 
-@numba.njit(cache=True)
+@_compiled
 def _pad(state, padded, n):  # type: ignore[no-untyped-def]
     for field in range(2):
         for i in range(n):
@@ -70,13 +73,13 @@ def _pad(state, padded, n):  # type: ignore[no-untyped-def]
             padded[field, n + 3 + ghost] = state[field, ghost]
 
 
-@numba.njit(cache=True, inline="always")
+@numba.njit(cache=True, error_model="numpy", inline="always")
 def _between(a, b):  # type: ignore[no-untyped-def]
     """The one nearer to zero where signs agree, else zero (minmod)."""
     return max(min(a, b), 0.0) + min(max(a, b), 0.0)
 
 
-@numba.njit(cache=True, inline="always")
+@numba.njit(cache=True, error_model="numpy", inline="always")
 def _face_value(a, b, c, d, e):  # type: ignore[no-untyped-def]
     """Value between c and d from five cells, a farthest upwind (Suresh and Huynh 1997, MP5).
 
@@ -95,7 +98,7 @@ def _face_value(a, b, c, d, e):  # type: ignore[no-untyped-def]
     return value + _between(lowest - value, highest - value)
 
 
-@numba.njit(cache=True)
+@_compiled
 def _climbing_face(u, face, n):  # type: ignore[no-untyped-def]
     """u at face f, between cells f - 1 and f, seen from downhill; u carries three ghost cells."""
     u1, u2, u3, u4, u5 = u[1:], u[2:], u[3:], u[4:], u[5:]
@@ -103,7 +106,7 @@ def _climbing_face(u, face, n):  # type: ignore[no-untyped-def]
         face[f] = _face_value(u5[f], u4[f], u3[f], u2[f], u1[f])
 
 
-@numba.njit(cache=True)
+@_compiled
 def _rolling_flux(R, flux, v, D, dx, n):  # type: ignore[no-untyped-def]
     """F at face f, between cells f - 1 and f; R carries three ghost cells."""
     spread = D / (180 * dx)
@@ -114,7 +117,7 @@ def _rolling_flux(R, flux, v, D, dx, n):  # type: ignore[no-untyped-def]
         flux[f] = v * carried - spread * difference
 
 
-@numba.njit(cache=True)
+@_compiled
 def _rolling_flux_at_open_ends(R, flux, v, D, dx, n):  # type: ignore[no-untyped-def]
     flux[0] = 0.0
     flux[1] = v * (R[0] + R[1]) / 2 - D * (R[1] - R[0]) / dx
@@ -125,46 +128,42 @@ def _rolling_flux_at_open_ends(R, flux, v, D, dx, n):  # type: ignore[no-untyped
     flux[n - 2] = v * carried - _fourth_order_spread(R, n - 2, D, dx)
 
 
-@numba.njit(cache=True)
+@_compiled
 def _third_order_drift(R, f, v):  # type: ignore[no-untyped-def]
     return v * (2 * R[f] + 5 * R[f - 1] - R[f - 2]) / 6
 
 
-@numba.njit(cache=True)
+@_compiled
 def _fourth_order_spread(R, f, D, dx):  # type: ignore[no-untyped-def]
     return D * (15 * (R[f] - R[f - 1]) - (R[f + 1] - R[f - 2])) / (12 * dx)
 
 
-@numba.njit(cache=True, inline="always")
-def _exchanging(R, saturation):  # type: ignore[no-untyped-def]
-    """The part of the layer that exchanges: R+/(1 + saturation R+)."""
-    wet = max(R, 0.0)
-    return wet / (1.0 + saturation * wet)
-
-
-@numba.njit(cache=True)
+@_compiled
 def _change(  # type: ignore[no-untyped-def]
     u, R, u_face, flux, out, gamma, kappa, dx, n, saturation
 ):
     u0, u1, u2, u3, u4, u5, u6 = u[0:], u[1:], u[2:], u[3:], u[4:], u[5:], u[6:]
     u_face_out, flux_out = u_face[1:], flux[1:]
     u_rate, R_rate, ends_rate = out[0], out[1], out[2]
-    slope, bend = gamma / dx, kappa / (180 * dx * dx)
+    slope = gamma / dx
+    bend = None if kappa is None else kappa / (180 * dx * dx)
     for i in range(n):
         gradient = u_face_out[i] - u_face[i]
         curvature = 2 * (u0[i] + u6[i]) - 27 * (u1[i] + u5[i]) + 270 * (u2[i] + u4[i]) - 490 * u3[i]
-        exchange = -_exchanging(R[i], saturation) * (slope * gradient + bend * curvature)
-        u_rate[i] = -exchange
-        R_rate[i] = (flux[i] - flux_out[i]) / dx + exchange
+        gained = exchange(R[i], gradient, curvature, slope, bend, saturation)
+        u_rate[i] = -gained
+        R_rate[i] = (flux[i] - flux_out[i]) / dx + gained
         ends_rate[i] = 0.0
 
 
-@numba.njit(cache=True)
+@_compiled
 def _change_at_open_ends(  # type: ignore[no-untyped-def]
     u, R, flux, out, gamma, kappa, dx, n, foot, saturation
 ):
     """The cells whose stencils would reach past an end."""
     z = n - 1
+    slope = gamma / dx
+    bend = None if kappa is None else kappa / dx**2
     for i, gradient, curvature in (
         (0, (-11 * u[0] + 18 * u[1] - 9 * u[2] + 2 * u[3]) / 6, 0.0),
         (1, _third_order_gradient(u, 1), u[0] - 2 * u[1] + u[2]),
@@ -181,18 +180,17 @@ def _change_at_open_ends(  # type: ignore[no-untyped-def]
             -0.2 * u[z - 2] + 2 * u[z - 1] - 5 * u[z] + 3.2 * foot,
         ),
     ):
-        rate_per_layer = gamma / dx * gradient + kappa / dx**2 * curvature
-        exchange = -_exchanging(R[i], saturation) * rate_per_layer
-        out[0, i] = -exchange
-        out[1, i] = (flux[i] - flux[i + 1]) / dx + exchange
+        gained = exchange(R[i], gradient, curvature, slope, bend, saturation)
+        out[0, i] = -gained
+        out[1, i] = (flux[i] - flux[i + 1]) / dx + gained
 
 
-@numba.njit(cache=True)
+@_compiled
 def _curvature_on_foot(u, foot, dx, n):  # type: ignore[no-untyped-def]
     """u_xx at x = N dx of the cubic with u_x = 0 there through the last two cells."""
     return (108 * (u[n - 1] - foot) - 4 * (u[n - 2] - foot)) / (9 * dx**2)
 
 
-@numba.njit(cache=True)
+@_compiled
 def _third_order_gradient(u, i):  # type: ignore[no-untyped-def]
     return (6 * u[i + 1] - 3 * u[i] - 2 * u[i - 1] - u[i + 2]) / 6

@@ -18,7 +18,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bcre_pde.solve import Problem, Solution, SolveError, solve
+from bcre_pde.failure import SolveError
+from bcre_pde.solve import Problem, Solution, solve
 
 Array = NDArray[np.float64]
 

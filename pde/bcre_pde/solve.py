@@ -1,38 +1,32 @@
-"""Solving BCRE with py-pde's solvers: the one place that calls them."""
+"""Solving an initial value problem for BCRE, recorded at given times."""
 
 from __future__ import annotations
 
 import itertools
-import logging
 import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
-from typing import Any, Literal, get_args
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 from pde import CartesianGrid, FieldCollection
-from pde.solvers import RungeKuttaSolver, ScipySolver
-from scipy import sparse
 
+from bcre_pde.advance import Method as Method  # re-exported
+from bcre_pde.advance import advance
 from bcre_pde.equation import BCRE, Material
 from bcre_pde.fluxes import SMALLEST_GRID
 
 Array = NDArray[np.float64]
 Ends = Literal["open", "periodic"]
-Method = Literal["runge-kutta", "RK45", "DOP853", "LSODA", "BDF"]
-
-# Its warnings on the time that trackers take would stand between a user and an error message.
-logging.getLogger("pde").setLevel(logging.ERROR)
 
 TOLERANCE = 1e-6
 """Default local error per step, relative to the largest rolling layer."""
 
 
-class SolveError(RuntimeError):
-    """A solver that gave up, with the time up to which it came."""
+MOST_EVALUATIONS = 10**8
+"""How often one solve may evaluate the right-hand side before it is taken to be endless."""
 
 
 @dataclass(frozen=True)
@@ -123,7 +117,8 @@ def solve(
     Raises
     ------
     SolveError
-        where the solver gave up; ValueError for arguments that are not allowed.
+        where the solver gave up, or would evaluate the right-hand side more often than
+        ``MOST_EVALUATIONS``; ValueError for arguments that are not allowed.
     """
     times = _ascending(times)
     if method not in get_args(Method):
@@ -134,7 +129,7 @@ def solve(
         raise ValueError(f"cells = {cells!r}: must be at least {SMALLEST_GRID}")
     periodic = problem.ends == "periodic"
     grid = CartesianGrid([[0.0, problem.length]], cells, periodic=periodic)
-    equation = BCRE(problem.material, grid)
+    equation = BCRE(problem.material, grid, MOST_EVALUATIONS)
     state = _initial_state(problem, grid)
     record = _Recorder(problem, grid)
     equation.evolution_rate(state)  # compiles, so that the clock sees the solve alone
@@ -142,7 +137,10 @@ def solve(
     now = 0.0
     for then in times:
         if then > now:
-            state = _advance(equation, state, (now, then), method, tolerance, record)
+            counted = equation.evaluations
+            state, steps = advance(equation, state, (now, then), method, tolerance)
+            record.steps += steps
+            record.evaluations += equation.evaluations - counted
             now = then
         record.add(state, then, time.perf_counter() - began)
         if stop is not None and stop(record.solution(ends_only=True)):
@@ -190,84 +188,6 @@ def _initial_state(problem: Problem, grid: CartesianGrid) -> FieldCollection:
     if not (np.isfinite(h).all() and np.isfinite(R).all()):
         raise ValueError("the initial h and R must be finite")
     return BCRE.state(grid, h + Sc * x, R, float(h_foot[0]) + Sc * problem.length)
-
-
-def _advance(
-    equation: BCRE,
-    state: FieldCollection,
-    span: tuple[float, float],
-    method: Method,
-    tolerance: float,
-    record: _Recorder,
-) -> FieldCollection:
-    largest_R = _layer_scale(state[1].data)
-    if method == "runge-kutta":
-        bound = equation.largest_explicit_step(largest_R)
-        least = max(min(1e-10, 1e-10 * bound), 4 * math.ulp(span[1]))
-        if not least < bound:
-            raise SolveError(f"{method}: the stable step {bound:.3g} is too small to be taken")
-        solver = partial(BoundedRungeKutta, dt_max=bound, dt_min=least, tolerance=tolerance)
-        first = min(bound, span[1] - span[0])
-    else:
-        options: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * largest_R}
-        if method == "BDF":
-            options["jac_sparsity"] = _jacobian_pattern(state.grid.shape[0])
-        solver = partial(ScipySolver, method=method, **options)
-        first = None
-    counted = equation.evaluations
-    try:
-        end, info = equation.solve(
-            state, span, dt=first, tracker=None, solver=solver, backend="numpy", ret_info=True
-        )
-    except RuntimeError as failure:
-        raise SolveError(
-            f"{method} gave up between t = {span[0]:.6g} and {span[1]:.6g}: {failure}"
-        ) from failure
-    if not info["controller"]["successful"]:
-        # py-pde returns quietly where it was interrupted.
-        raise KeyboardInterrupt
-    if not np.isfinite(end.data).all():
-        raise SolveError(f"{method} left no finite layer at t = {span[1]:.6g}")
-    record.steps += info["solver"]["steps"]
-    record.evaluations += equation.evaluations - counted
-    return end
-
-
-class BoundedRungeKutta(RungeKuttaSolver):  # type: ignore[misc]
-    """py-pde's adaptive Runge-Kutta-Fehlberg solver with the three things that this equation needs.
-
-    Its error is relative to the largest rolling layer of the moment, which may grow from 1e-150;
-    its step never passes ``dt_max``: without that it would grow fourfold wherever nothing
-    happens, until rounding errors have been amplified to the size of the tolerance; and it gives
-    up below ``dt_min``, since py-pde's 1e-10 would be a long step where times are short.
-    """
-
-    name = "bounded runge-kutta"
-
-    def __init__(self, pde: BCRE, *, dt_max: float, dt_min: float, **options: Any) -> None:
-        super().__init__(pde, adaptive=True, **options)
-        self.dt_max = dt_max
-        self.dt_min = dt_min
-
-    def _make_single_step_error_estimate(self, state: FieldCollection) -> Callable[..., Any]:
-        single_step = super()._make_single_step_error_estimate(state)
-
-        def relative_single_step(data: Array, t: float, dt: float) -> tuple[Array, float]:
-            new, error = single_step(data, t, dt)
-            return new, error / _layer_scale(new[1])
-
-        return relative_single_step
-
-
-def _jacobian_pattern(cells: int) -> sparse.csc_array:
-    """Which rates depend on which values: each field on all three, up to three cells away."""
-    offsets = [*range(-3, 4), *range(cells - 3, cells), *range(1 - cells, 4 - cells)]
-    near = sparse.diags_array([np.ones(cells - abs(offset)) for offset in offsets], offsets=offsets)
-    return sparse.kron(np.ones((3, 3)), near, format="csc")
-
-
-def _layer_scale(R: Array) -> float:
-    return float(np.abs(R).max()) or 1.0
 
 
 def _ascending(times: Sequence[float]) -> list[float]:

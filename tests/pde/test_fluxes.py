@@ -10,7 +10,7 @@ HALF = sp.Rational(1, 2)
 
 
 def rate(
-    u, R, v=0.0, D=0.0, gamma=0.0, kappa=0.0, dx=1.0, periodic=False, foot=0.0, saturation=0.0
+    u, R, v=0.0, D=0.0, gamma=0.0, kappa=None, dx=1.0, periodic=False, foot=0.0, saturation=None
 ):
     """du/dt, dR/dt, du_foot/dt and the flux through the foot."""
     n = len(u)
@@ -144,7 +144,7 @@ def test_curvature_on_the_foot_is_exact_for_cubics_with_no_slope_there():
 
 
 def test_foot_keeps_its_height_without_curvature_term():
-    _, _, foot, _ = rate(np.linspace(5, 0, 12), np.ones(12), 1.0, 0.3, 0.5, 0.0, 0.1, foot=-2.0)
+    _, _, foot, _ = rate(np.linspace(5, 0, 12), np.ones(12), 1.0, 0.3, 0.5, None, 0.1, foot=-2.0)
     assert foot == 0
 
 

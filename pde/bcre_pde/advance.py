@@ -1,0 +1,108 @@
+"""One stretch of time with one of py-pde's solvers: the one place that calls them."""
+
+from __future__ import annotations
+
+import logging
+import math
+import sys
+from functools import partial
+from typing import Any, Literal
+
+import numpy as np
+from pde import FieldCollection
+from pde.solvers import ScipySolver
+from scipy import sparse
+
+from bcre_pde.bounded import BoundedRungeKutta, layer_scale
+from bcre_pde.equation import BCRE
+from bcre_pde.explicit import FEHLBERG
+from bcre_pde.failure import SolveError, failed
+
+Method = Literal["runge-kutta", "RK45", "DOP853", "LSODA", "BDF"]
+
+# Its warnings on the time that trackers take would stand between a user and an error message.
+logging.getLogger("pde").setLevel(logging.ERROR)
+
+
+def advance(
+    equation: BCRE,
+    state: FieldCollection,
+    span: tuple[float, float],
+    method: Method,
+    tolerance: float,
+) -> tuple[FieldCollection, int]:
+    """The state at the end of ``span``, and the steps counted (for SciPy's solvers, evaluations).
+
+    Raises
+    ------
+    SolveError
+        where the solver gave up, or would need more evaluations than the equation allows.
+    """
+    largest_R = layer_scale(state[1].data)
+    if method == "runge-kutta":
+        bound = _bounded_step(equation, largest_R, span)
+        least = max(min(1e-10, 1e-10 * bound), 4 * math.ulp(span[1]))
+        if not least < bound:
+            raise SolveError(
+                f"{method}: the stable step {bound:.3g} at t = {span[0]:.6g} is too small to be "
+                f"taken, with R up to {largest_R:.3g} in cell {_thickest(state)}",
+                span[0],
+                _thickest(state),
+            )
+        solver = partial(BoundedRungeKutta, dt_max=bound, dt_min=least, tolerance=tolerance)
+        first = min(bound, span[1] - span[0])
+    else:
+        absolute = max(tolerance * largest_R, sys.float_info.min)  # 0 would divide 0 by 0
+        options: dict[str, Any] = {"rtol": tolerance, "atol": absolute}
+        if method == "BDF":
+            options["jac_sparsity"] = _jacobian_pattern(state.grid.shape[0])
+        solver = partial(ScipySolver, method=method, **options)
+        first = None
+    try:
+        with np.errstate(**_silenced()):
+            end, info = equation.solve(
+                state, span, dt=first, tracker=None, solver=solver, backend="numpy", ret_info=True
+            )
+    except (RuntimeError, ValueError) as failure:
+        raise failed(equation, method, str(failure)) from failure
+    if not info["controller"]["successful"]:
+        # py-pde returns quietly where it was interrupted.
+        raise KeyboardInterrupt
+    if not np.isfinite(end.data).all():
+        equation.last_time = span[1]
+        equation.last_layers = end.data
+        raise failed(equation, method)
+    return end, info["solver"]["steps"]
+
+
+def _bounded_step(equation: BCRE, largest_R: float, span: tuple[float, float]) -> float:
+    """The longest stable step; refused where the evaluations that are left cannot suffice."""
+    bound = equation.largest_explicit_step(largest_R)
+    needed = FEHLBERG.b.size * (span[1] - span[0]) / bound
+    if needed > equation.most_evaluations - equation.evaluations:
+        raise SolveError(
+            f"runge-kutta: steps of at most {bound:.3g}, the stable step with R up to "
+            f"{largest_R:.3g}, evaluate the right-hand side {needed:.3g} times from t = "
+            f"{span[0]:.6g} to {span[1]:.6g}; {equation.most_evaluations:.6g} are allowed",
+            span[0],
+        )
+    return bound
+
+
+def _thickest(state: FieldCollection) -> int:
+    return int(np.argmax(np.abs(state[1].data)))
+
+
+def _silenced() -> dict[str, Any]:
+    """NumPy's answers to overflow and the like, with no warning: what is not finite is found out.
+
+    Where the caller asked for an error, it stays one.
+    """
+    return {kind: "ignore" if how == "warn" else how for kind, how in np.geterr().items()}
+
+
+def _jacobian_pattern(cells: int) -> sparse.csc_array:
+    """Which rates depend on which values: each field on all three, up to three cells away."""
+    offsets = [*range(-3, 4), *range(cells - 3, cells), *range(1 - cells, 4 - cells)]
+    near = sparse.diags_array([np.ones(cells - abs(offset)) for offset in offsets], offsets=offsets)
+    return sparse.kron(np.ones((3, 3)), near, format="csc")

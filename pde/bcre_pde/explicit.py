@@ -1,0 +1,118 @@
+r"""Explicit Runge-Kutta methods by their coefficients, and their stages without allocation.
+
+    k_i = dt f(y + sum_j a_ij k_j)        y(t + dt) = y + sum_i b_i k_i
+
+Every sum runs from its first term to its last, as in the formulae of py-pde, so that the compiled
+ones here give the same numbers to the bit.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple, get_args
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from bcre_pde.equation import BCRE
+
+Array = NDArray[np.float64]
+ExplicitMethod = Literal["runge-kutta", "RK45", "DOP853"]
+
+
+class Tableau(NamedTuple):
+    """a (s, s), strictly lower; b (s,) of the solution that is kept; times c (s,) of the stages."""
+
+    a: Array
+    b: Array
+    c: Array
+
+
+FEHLBERG = Tableau(
+    np.array(
+        [
+            [0, 0, 0, 0, 0, 0],
+            [1 / 4, 0, 0, 0, 0, 0],
+            [3 / 32, 9 / 32, 0, 0, 0, 0],
+            [1932 / 2197, -7200 / 2197, 7296 / 2197, 0, 0, 0],
+            [439 / 216, -8.0, 3680 / 513, -845 / 4104, 0, 0],
+            [-8 / 27, 2.0, -3544 / 2565, 1859 / 4104, -11 / 40, 0],
+        ]
+    ),
+    np.array([25 / 216, 0, 1408 / 2565, 2197 / 4104, -1 / 5, 0]),
+    np.array([0, 1 / 4, 3 / 8, 12 / 13, 1, 1 / 2]),
+)
+"""Fehlberg's fourth-order formula, which py-pde's adaptive solver keeps (formula 2, Table III)."""
+
+FEHLBERG_ERROR = np.array([1 / 360, 0, -128 / 4275, -2197 / 75240, 1 / 50, 2 / 55])
+"""Weights of its error estimate, the fifth-order formula less the fourth-order one."""
+
+
+def tableau(method: ExplicitMethod) -> Tableau:
+    """The coefficients of a method of :func:`bcre_pde.solve`; SciPy's from its own classes.
+
+    Raises
+    ------
+    ValueError
+        naming the methods that are explicit and so have a bound on their step.
+    """
+    if method not in get_args(ExplicitMethod):
+        raise ValueError(f"method = {method!r}: must be explicit, {get_args(ExplicitMethod)}")
+    if method == "runge-kutta":
+        return FEHLBERG
+    from scipy import integrate  # late: slow to import
+
+    solver = getattr(integrate, method)
+    stages = solver.n_stages
+    a = np.zeros((stages, stages))
+    known = solver.A[:stages, :stages]
+    a[:, : known.shape[1]] = known
+    return Tableau(a, np.asarray(solver.B), np.asarray(solver.C[:stages]))
+
+
+class Step:
+    """One step of fixed length, in memory that is taken once.
+
+    Parameters
+    ----------
+    equation: whose right-hand side is evaluated.
+    method: the coefficients.
+    """
+
+    def __init__(self, equation: BCRE, method: Tableau) -> None:
+        shape = equation.last_layers.shape
+        self._equation = equation
+        self._method = method
+        self._stage = np.empty(shape)
+        self.increments = np.empty((method.b.size, *shape))
+
+    def __call__(self, layers: Array, t: float, dt: float, new: Array) -> None:
+        """Write y(t + dt) into ``new``; ``layers`` and ``new`` have shape (3, N)."""
+        a, b, c = self._method
+        for i, increment in enumerate(self.increments):
+            weighted_sum(layers, self.increments, a[i], i, self._stage)
+            self._equation.write_rate(self._stage, increment, t + c[i] * dt)
+            _scale(increment, dt)
+        weighted_sum(layers, self.increments, b, b.size, new)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def weighted_sum(start, terms, weights, count, out):  # type: ignore[no-untyped-def]
+    """out = start + sum of the first ``count`` weights times terms, but for weights of zero."""
+    rows, cells = out.shape
+    for row in range(rows):
+        for i in range(cells):
+            out[row, i] = start[row, i]
+        for k in range(count):
+            weight = weights[k]
+            if weight != 0.0:
+                for i in range(cells):
+                    out[row, i] += weight * terms[k, row, i]
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _scale(values, factor):  # type: ignore[no-untyped-def]
+    rows, cells = values.shape
+    for row in range(rows):
+        for i in range(cells):
+            values[row, i] *= factor
