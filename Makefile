@@ -27,7 +27,7 @@ bench: install ## time the automaton against what would be used instead (under 3
 	@$(BIN)/python -c 'import fipy' 2>/dev/null \
 		|| $(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-bench.lock \
 		|| echo 'FiPy cannot be installed here: its benchmarks are skipped' >&2
-	$(BIN)/python -m pytest -o addopts='--import-mode=importlib -q --strict-markers' -o python_files='bench_*.py' tests/benchmarks
+	$(BIN)/python -m pytest -o addopts='--import-mode=importlib -q --strict-markers' -o python_files='bench_*.py' -o python_functions='bench_*' tests/benchmarks
 
 check: install ## judge all claims again; fails where a verdict differs from reports/verdicts.csv
 	$(BIN)/bcre check

@@ -61,9 +61,9 @@ def test_additions_are_not_reordered():
 
 
 def test_load_counts_every_value_of_every_pass():
-    load = machine.additions(values=7, passes=3)
+    load = machine.additions(passes=3)
     load.call()
-    assert load.amount == machine.CHAIN * 7 * 3
+    assert load.amount == machine.CHAIN * machine.VALUES * 3
 
 
 def test_pass_reads_and_writes_both_layers_of_every_cell():

@@ -26,6 +26,9 @@ ADDITIONS_A_CELL = 7
 CHAIN = 16
 """Additions per value in :func:`_add_up`."""
 
+VALUES = 512
+"""Values in :func:`additions`: 8 kB, and whole unrolled vectors, so that no remainder is slow."""
+
 LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "py-pde", "fipy")
 
 
@@ -51,15 +54,15 @@ def description() -> dict[str, str]:
     return described | {name: found for name in LIBRARIES if (found := _version(name))}
 
 
-def additions(values: int = 512, passes: int = 20_000) -> Load:
+def additions(passes: int = 20_000) -> Load:
     """Additions of float64 on one core, on data in the first-level cache, as compiled code can.
 
     Every value goes through a chain of 16 additions in registers, which may not be reordered,
     between one load and one store; the values are independent, so that they fill the vectors and
     the chains of several vectors overlap.
     """
-    start, end = np.linspace(0.0, 1.0, values), np.empty(values)
-    return Load(lambda: _add_up(start, end, 1e-3, -1e-3, passes), float(CHAIN * values * passes))
+    start, end = np.linspace(0.0, 1.0, VALUES), np.empty(VALUES)
+    return Load(lambda: _add_up(start, end, 1e-3, -1e-3, passes), float(CHAIN * VALUES * passes))
 
 
 def memory_pass(cells: int = 10_000_000) -> Load:
