@@ -5,24 +5,25 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bcre_ca.kernels import march
+from bcre_ca import kernels
+from bcre_ca.kernels import BLOCK
 from bcre_ca.rule import Ends, Rule, UnstableStep
 
 Array = NDArray[np.float64]
 
-BLOCK = 32
-"""Steps between two looks at the bounds when the step follows them."""
+AT_ONCE = 200_000_000
+"""Cell-steps between two looks at the keyboard: compiled code cannot be interrupted."""
 
 DENORMAL = 1e-300
 """Below this the sign of a layer is a matter of rounding among denormal numbers."""
 
 MARGIN = 0.8
-"""Part of the bound that such a step takes, so that a block of growth seldom passes it."""
+"""Part of the bound that a followed step takes, so that a block of growth seldom passes it."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,9 @@ class Pile:
     """The automaton's state: layers h and R of shape (N,), time, and the history of mass.
 
     ``outflow`` is the area that has left through the foot, so that
-    ``d sum(h + R) + outflow`` does not change.
+    ``d sum(h + R) + outflow`` does not change. ``steps`` counts those taken; ``lowered`` and
+    ``raised`` how often a step that follows its bounds became shorter or longer, ``redone`` how
+    often a block of steps was taken back and repeated in shorter ones.
     """
 
     h: Array
@@ -38,6 +41,9 @@ class Pile:
     t: float = 0.0
     outflow: float = 0.0
     steps: int = 0
+    lowered: int = 0
+    raised: int = 0
+    redone: int = 0
 
     def mass(self, d: float) -> float:
         """Area of sand in the pile, d sum(h + R)."""
@@ -51,7 +57,9 @@ def evolve(
 
     Parameters
     ----------
-    h, R: static and rolling layer, lengths, shape (N,).
+    h, R: static and rolling layer, lengths, shape (N,); or (scenes, N) for many piles of one rule,
+        which are shared out among the processors. Arithmetic is in single precision where both
+        are float32, else in double.
     steps: number of steps, >= 0.
     ends: ``"open"`` (closed top, open foot) or ``"periodic"`` (in h + Sc x and R).
 
@@ -61,10 +69,19 @@ def evolve(
         where dt cannot be stable for this start; FloatingPointError where the layers outgrew it
         on the way; ValueError for layers of unequal, empty or non-finite content.
     """
-    start = Pile(*_layers(h, R))
-    require_stable(start, rule, ends)
-    end = _advance_stably(start, rule, steps, ends)
-    return end.h, end.R
+    static, rolling = _layers(h, R)
+    _require_steps(steps)
+    _require_ends(ends)
+    require_stable(static, rolling, rule, ends)
+    start = static.copy(), rolling.copy()
+    _march(static, rolling, rule, int(steps), ends)
+    try:
+        require_stable(static, rolling, rule, ends)
+    except UnstableStep:
+        for row in zip(*(np.atleast_2d(layer) for layer in start), strict=True):
+            _require_outlasting(Pile(*row), rule, int(steps), ends)
+        raise
+    return static, rolling
 
 
 def advance(pile: Pile, rule: Rule, steps: int, ends: Ends = "open") -> Pile:
@@ -73,22 +90,22 @@ def advance(pile: Pile, rule: Rule, steps: int, ends: Ends = "open") -> Pile:
     Raises
     ------
     FloatingPointError
-        naming the first cell that is no longer finite and the bound that was passed.
+        where the layers are no longer finite, naming cell, time and the bound that was passed.
     """
-    if isinstance(steps, bool) or steps != int(steps) or steps < 0:
-        raise ValueError(f"steps = {steps!r}: must be a whole number >= 0")
-    if ends not in ("open", "periodic"):
-        raise ValueError(f"ends = {ends!r}: must be 'open' or 'periodic'")
+    _require_steps(steps)
+    _require_ends(ends)
     h, R = pile.h.copy(), pile.R.copy()
-    outflow = march(h, R, rule, steps, ends) * rule.d
+    outflow = _march(h, R, rule, int(steps), ends) * rule.d
     if not (np.isfinite(h).all() and np.isfinite(R).all()):
-        cell = int(np.argmin(np.isfinite(h) & np.isfinite(R)))
-        raise FloatingPointError(
-            f"the automaton lost stability between t = {pile.t:.6g} and "
-            f"{pile.t + steps * rule.dt:.6g}, first in cell {cell}: gamma R dt/d passed 1 "
-            f"(dt = {rule.dt:.6g})"
-        )
-    return Pile(h, R, pile.t + steps * rule.dt, pile.outflow + outflow, pile.steps + steps)
+        _require_outlasting(pile, rule, int(steps), ends)
+    return replace(
+        pile,
+        h=h,
+        R=R,
+        t=pile.t + steps * rule.dt,
+        outflow=pile.outflow + outflow,
+        steps=pile.steps + int(steps),
+    )
 
 
 def frames(
@@ -110,11 +127,11 @@ def frames(
     UnstableStep
         for a fixed step that cannot be stable at the start.
     FloatingPointError
-        for a fixed step that the avalanche outgrew.
+        for a fixed step that the avalanche outgrew, naming cell, time and bound.
     """
     if step != "auto":
         rule = replace(rule, dt=step)
-        require_stable(pile, rule, ends)
+        require_stable(pile.h, pile.R, rule, ends)
     for time in times:
         if time < pile.t:
             raise ValueError(f"times = {list(times)!r}: must ascend from t = {pile.t!r}")
@@ -123,13 +140,24 @@ def frames(
 
 
 def largest_stable_step(pile: Pile, rule: Rule, ends: Ends) -> float:
-    """:meth:`Rule.max_stable_step` for this pile."""
-    return rule.max_stable_step(float(pile.R.max()), _smallest_slope(pile, rule, ends))
+    """:meth:`Rule.max_stable_step` for this pile; NaN where it is not finite."""
+    return kernels.stable_step(pile.h, pile.R, rule, ends)
 
 
-def require_stable(pile: Pile, rule: Rule, ends: Ends) -> None:
-    """Raise :class:`UnstableStep` where ``rule.dt`` cannot be stable for this pile."""
-    rule.require_stable(float(pile.R.max()), _smallest_slope(pile, rule, ends))
+def require_stable(h: Array, R: Array, rule: Rule, ends: Ends) -> None:
+    """Raise :class:`UnstableStep` where ``rule.dt`` cannot be stable for these layers."""
+    rows = zip(np.atleast_2d(h), np.atleast_2d(R), strict=True)
+    largest = min(kernels.stable_step(*row, rule, ends) for row in rows)
+    rule.require_within(largest, float(R.max()))
+
+
+def _march(h: Array, R: Array, rule: Rule, steps: int, ends: Ends) -> float:
+    """March in place, in parts short enough to be interrupted between."""
+    part = max(AT_ONCE // h.size, BLOCK)
+    outflows = (
+        kernels.march(h, R, rule, min(part, steps - done), ends) for done in range(0, steps, part)
+    )
+    return math.fsum(outflows)
 
 
 def _reach(pile: Pile, rule: Rule, time: float, ends: Ends) -> Pile:
@@ -146,48 +174,77 @@ def _reach(pile: Pile, rule: Rule, time: float, ends: Ends) -> Pile:
 def _advance_stably(pile: Pile, rule: Rule, steps: int, ends: Ends) -> Pile:
     end = advance(pile, rule, steps, ends)
     try:
-        require_stable(end, rule, ends)
-    except UnstableStep as outgrown:
-        message = f"the avalanche outgrew the step by t = {end.t:.6g}: {outgrown}"
-        raise FloatingPointError(message) from None
+        require_stable(end.h, end.R, rule, ends)
+    except UnstableStep:
+        _require_outlasting(pile, rule, steps, ends)
+        raise
     return end
 
 
-def _follow(pile: Pile, rule: Rule, time: float, ends: Ends) -> Pile:
-    while time - pile.t > 1e-12 * abs(time):
-        span = time - pile.t
-        bound = largest_stable_step(pile, rule, ends)
-        steps = min(BLOCK, max(math.ceil(span / (MARGIN * bound)), 1))
-        dt = min(MARGIN * bound, span / steps)
-        pile = _stable_block(pile, replace(rule, dt=dt), steps, ends)
-    return replace(pile, t=time)
-
-
-def _stable_block(pile: Pile, rule: Rule, steps: int, ends: Ends) -> Pile:
-    while True:
+def _require_outlasting(
+    pile: Pile, rule: Rule, steps: int, ends: Ends, together: int = BLOCK
+) -> None:
+    """Take the steps again, so many together, and say where the step ceased to be stable."""
+    for done in range(0, steps, together):
+        h, R = pile.h.copy(), pile.R.copy()
+        part = min(together, steps - done)
+        kernels.march(h, R, rule, part, ends)
         try:
-            end = advance(pile, rule, steps, ends)
-            require_stable(end, rule, ends)
-        except (FloatingPointError, UnstableStep):
-            rule = replace(rule, dt=rule.dt / 2)
-        else:
-            return end
+            require_stable(h, R, rule, ends)
+        except UnstableStep as outgrown:
+            if part > 1:
+                _require_outlasting(pile, rule, part, ends, together=1)
+            finite = np.isfinite(h) & np.isfinite(R)
+            cell = int(np.argmax(R)) if finite.all() else int(np.argmin(finite))
+            raise FloatingPointError(
+                f"the avalanche outgrew the step at t = {pile.t + part * rule.dt:.6g}, in cell "
+                f"{cell}: {outgrown}"
+            ) from None
+        pile = replace(pile, h=h, R=R, t=pile.t + part * rule.dt)
 
 
-def _smallest_slope(pile: Pile, rule: Rule, ends: Ends) -> float:
-    fall = pile.h[:-1] - pile.h[1:]
-    smallest = float(fall.min()) / rule.d if fall.size else rule.Sc
-    if ends == "periodic":
-        across = float(pile.h[-1] - pile.h[0]) / rule.d + rule.Sc * pile.h.size
-        smallest = min(smallest, across)
-    return smallest
+def _follow(pile: Pile, rule: Rule, time: float, ends: Ends) -> Pile:
+    h, R = pile.h.copy(), pile.R.copy()
+    span, blocks = time - pile.t, max(AT_ONCE // (h.size * BLOCK), 1)
+    if span <= 1e-12 * abs(time):
+        return replace(pile, t=time)
+    while span > 0:
+        done = kernels.follow(h, R, rule, span, blocks, MARGIN, ends)
+        if done.left < 0:
+            raise FloatingPointError(
+                f"no step is short enough at t = {time + done.left:.6g}: the layers outgrow "
+                "every bound"
+            )
+        span = done.left
+        pile = replace(
+            pile,
+            outflow=pile.outflow + done.outflow * rule.d,
+            steps=pile.steps + done.steps,
+            lowered=pile.lowered + done.lowered,
+            raised=pile.raised + done.raised,
+            redone=pile.redone + done.redone,
+        )
+    return replace(pile, h=h, R=R, t=time)
+
+
+def _require_steps(steps: Any) -> None:
+    if isinstance(steps, bool) or steps != int(steps) or steps < 0:
+        raise ValueError(f"steps = {steps!r}: must be a whole number >= 0")
+
+
+def _require_ends(ends: str) -> None:
+    if ends not in ("open", "periodic"):
+        raise ValueError(f"ends = {ends!r}: must be 'open' or 'periodic'")
 
 
 def _layers(h: ArrayLike, R: ArrayLike) -> tuple[Array, Array]:
-    static, rolling = np.array(h, dtype=float), np.array(R, dtype=float)
-    if static.ndim != 1 or static.shape != rolling.shape or not static.size:
+    both_single = all(getattr(layer, "dtype", None) == np.float32 for layer in (h, R))
+    dtype: Any = np.float32 if both_single else float
+    static, rolling = np.array(h, dtype=dtype, order="C"), np.array(R, dtype=dtype, order="C")
+    if static.ndim not in (1, 2) or static.shape != rolling.shape or not static.size:
         raise ValueError(
-            f"h has shape {static.shape}, R {rolling.shape}: must be equal, (N,) with N >= 1"
+            f"h has shape {static.shape}, R {rolling.shape}: must be equal, (N,) with N >= 1, or "
+            "(scenes, N)"
         )
     if not (np.isfinite(static).all() and np.isfinite(rolling).all()):
         raise ValueError("h and R must be finite")

@@ -1,20 +1,29 @@
-"""The parameters of the automaton, the readings of its printed rule, and its stable steps."""
+"""The parameters of the automaton, the readings of its printed rule, its schemes and steps."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 from numbers import Real
-from typing import Literal, NamedTuple, get_args
+from typing import Literal, get_args
 
 from bcre_ca import theory
+from bcre_ca.coefficients import Coefficients, Parameters, fold, largest_step
 
 Sign = Literal["consistent", "printed"]
 Order = Literal["synchronous", "right", "left"]
+Scheme = Literal["upwind", "calibrated", "limited"]
 Ends = Literal["open", "periodic"]
 
 ROUNDING = 1e-12
 """Relative slack with which a step counts as equal to its bound."""
+
+
+LAYER_BOUND: dict[str, str] = {
+    "upwind": "v dt/d + 2 D dt/d^2 + gamma dt max(Sc - S, 0) must not exceed 1",
+    "calibrated": "(v dt/d)^2 + 2 D dt/d^2 + gamma dt max(Sc - S, 0) must not exceed 1",
+    "limited": "2 (v dt/d + 2 D dt/d^2 + gamma dt max(Sc - S, 0)) must not exceed 1",
+}
 
 
 class UnstableStep(ValueError):  # noqa: N818 - named for what happened, as StopIteration is
@@ -39,21 +48,6 @@ def _rounded_down(step: float) -> str:
     return text if float(text) <= step else f"{step * (1 - 5e-6):.6g}"
 
 
-class Coefficients(NamedTuple):
-    """The rule's constants folded per step and cell; every path computes with exactly these.
-
-    ``c = v dt/d``, ``b = D dt/d^2``, ``q = c + b``, ``k = gamma dt/d`` and ``s = ±Sc d`` (minus for
-    the printed sign). The flux out of cell i is ``q R(i) - b R(i+1)`` and the exchange
-    ``R(i) (k (h(i) - h(i+1) - s))``, in this order of operations.
-    """
-
-    c: float
-    b: float
-    q: float
-    k: float
-    s: float
-
-
 @dataclass(frozen=True)
 class Rule:
     """The automaton's transition map with its units.
@@ -70,6 +64,14 @@ class Rule:
         paper as they stand, gamma R (S + Sc).
     order: ``"synchronous"`` reads every neighbour from the old state; ``"right"`` and ``"left"``
         update in place, sweeping downhill or uphill.
+    scheme: ``"upwind"`` is the paper's. ``"calibrated"`` takes the diffusion and the curvature that
+        the upwind rule adds of its own out of D and kappa, so that D_eff = D and kappa_eff =
+        kappa; where D is too small for that, D_eff comes as near as it can
+        (:meth:`effective_diffusion`, :meth:`calibrating_step`). ``"limited"`` is of second order
+        where the layers are smooth (:mod:`bcre_ca.limited`).
+    kappa: curvature term of the exchange, length/time, >= 0.
+    v_up: largest speed of the climbing wave, length/time, > 0; infinite for the linear exchange.
+    dry: a layer thinner than this after a step comes to rest: R is moved into h. A length, >= 0.
 
     Raises
     ------
@@ -86,9 +88,13 @@ class Rule:
     dt: float
     sign: Sign = "consistent"
     order: Order = "synchronous"
+    scheme: Scheme = "upwind"
+    kappa: float = 0.0
+    v_up: float = math.inf
+    dry: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("v", "D", "gamma", "Sc"):
+        for name in ("v", "D", "gamma", "Sc", "kappa", "dry"):
             value = getattr(self, name)
             if not (_is_number(value) and value >= 0):
                 raise ValueError(f"{name} = {value!r}: must be a finite number >= 0")
@@ -96,65 +102,127 @@ class Rule:
             value = getattr(self, name)
             if not (_is_number(value) and value > 0):
                 raise ValueError(f"{name} = {value!r}: must be a finite number > 0")
-        if self.sign not in get_args(Sign):
-            raise ValueError(f"sign = {self.sign!r}: must be one of {get_args(Sign)}")
-        if self.order not in get_args(Order):
-            raise ValueError(f"order = {self.order!r}: must be one of {get_args(Order)}")
+        for name, allowed in (("sign", Sign), ("order", Order), ("scheme", Scheme)):
+            value = getattr(self, name)
+            if value not in get_args(allowed):
+                raise ValueError(f"{name} = {value!r}: must be one of {get_args(allowed)}")
+        if not (isinstance(self.v_up, Real) and self.v_up > 0):
+            raise ValueError(f"v_up = {self.v_up!r}: must be a number > 0")
+        if self.order != "synchronous":
+            for name, printed in (("scheme", "upwind"), ("kappa", 0.0), ("v_up", math.inf)):
+                if getattr(self, name) != printed:
+                    raise ValueError(
+                        f"{name} = {getattr(self, name)!r}: must be {printed!r} where order = "
+                        f"{self.order!r}, a reading of the printed rule"
+                    )
+
+    def parameters(self) -> Parameters:
+        """The rule without its dt, absent terms as None."""
+        return Parameters(
+            float(self.v),
+            float(self.D),
+            float(self.gamma),
+            float(self.exchange_slope()),
+            float(self.d),
+            kappa=float(self.kappa) if self.kappa > 0 else None,
+            v_up=float(self.v_up) if math.isfinite(self.v_up) else None,
+            dry=float(self.dry) if self.dry > 0 else None,
+            calibrated=True if self.scheme == "calibrated" else None,
+            limited=True if self.scheme == "limited" else None,
+        )
 
     def coefficients(self) -> Coefficients:
         """Fold the parameters into the constants that every path of the automaton uses."""
-        c = self.v * self.dt / self.d
-        b = self.D * self.dt / self.d**2
-        return Coefficients(
-            c=c, b=b, q=c + b, k=self.gamma * self.dt / self.d, s=self.exchange_slope() * self.d
-        )
+        folded: Coefficients = fold(self.parameters(), float(self.dt))
+        return folded
 
     def exchange_slope(self) -> float:
         """Slope at which the exchange vanishes: Sc, or -Sc for the printed sign."""
         return self.Sc if self.sign == "consistent" else -self.Sc
 
-    def max_stable_step(self, largest_R: float = 0.0, smallest_slope: float | None = None) -> float:
-        """Largest dt with v dt/d + 2 D dt/d^2 + gamma dt max(Sc - S, 0) <= 1, gamma R dt/d <= 1.
+    def max_stable_step(
+        self,
+        largest_R: float = 0.0,
+        smallest_slope: float | None = None,
+        largest_curvature: float = 0.0,
+    ) -> float:
+        """Largest dt that keeps R >= 0 and lets the surface wave cross at most a cell a step.
 
-        The first bound keeps R >= 0, the second keeps the surface wave, which climbs at gamma R,
-        from crossing more than a cell a step. See :func:`bcre_ca.theory.max_stable_step`.
+        Of the upwind rule: v dt/d + 2 D dt/d^2 + sink dt <= 1, (gamma/d + 2 kappa/d^2) X dt <= 1,
+        where sink = max(kappa h_xx - gamma (S - Sc), 0) and X(R) is the layer that exchanges; of
+        the others see :func:`bcre_ca.theory.max_stable_step`.
 
         Parameters
         ----------
         largest_R: largest rolling layer in the pile, a length.
         smallest_slope: smallest slope S in the pile; left out, nowhere below the repose slope.
+        largest_curvature: largest h_xx in the pile, 1/length.
         """
         deficit = 0.0 if smallest_slope is None else max(self.exchange_slope() - smallest_slope, 0)
-        return theory.max_stable_step(self.v, self.D, self.gamma, self.d, largest_R, deficit)
+        sink = self.gamma * deficit + self.kappa * max(largest_curvature, 0.0)
+        return float(largest_step(self.parameters(), largest_R, sink))
 
     def require_stable(self, largest_R: float = 0.0, smallest_slope: float | None = None) -> None:
         """Raise :class:`UnstableStep` where dt exceeds :meth:`max_stable_step`."""
-        largest = self.max_stable_step(largest_R, smallest_slope)
-        if self.dt > largest * (1 + ROUNDING):
-            layer_bound = self.max_stable_step(0.0, smallest_slope)
+        self.require_within(self.max_stable_step(largest_R, smallest_slope), largest_R)
+
+    def require_within(self, largest: float, largest_R: float) -> None:
+        """Raise :class:`UnstableStep` where dt exceeds ``largest``, the largest stable step found.
+
+        ``largest_R`` is the layer that it was found for: it tells which of the bounds was passed.
+        """
+        if not self.dt <= largest * (1 + ROUNDING):
+            of_wave = largest_step(self.parameters()._replace(v=0.0, D=0.0), largest_R, 0.0)
             bound = (
-                "v dt/d + 2 D dt/d^2 + gamma dt max(Sc - S, 0) must not exceed 1"
-                if self.dt > layer_bound * (1 + ROUNDING)
-                else f"gamma R dt/d must not exceed 1 where R = {largest_R:.6g}"
+                f"gamma R dt/d must not exceed 1 where R = {largest_R:.6g}"
+                if of_wave <= largest * (1 + ROUNDING)
+                else LAYER_BOUND[self.scheme]
             )
             raise UnstableStep(self.dt, largest, bound)
 
     def second_critical_slope(self) -> float:
-        """Sd of the synchronous rule; see :func:`bcre_ca.theory.second_critical_excess`."""
+        """Sd of the synchronous rule; see :func:`bcre_ca.theory.second_critical_excess`.
+
+        That of a calibrated rule follows from the D that its step leaves to it.
+        """
         self._require_synchronous("the second critical slope")
-        return self.exchange_slope() + theory.second_critical_excess(
-            self.v, self.D, self.gamma, self.d
-        )
+        if self.scheme == "limited":
+            raise ValueError(
+                "scheme = 'limited': the second critical slope is known in closed form for "
+                "'upwind' and 'calibrated' only, whose steps on a frozen slope are linear"
+            )
+        D = self.coefficients().b * self.d**2 / self.dt
+        return self.exchange_slope() + theory.second_critical_excess(self.v, D, self.gamma, self.d)
 
     def effective_diffusion(self) -> float:
-        """D_eff = D + (v d/2)(1 - v dt/d); see :func:`bcre_ca.theory.effective_diffusion`."""
+        """D_eff of the modified equation, to first order in d and dt.
+
+        D + (v d/2)(1 - v dt/d) for the upwind rule (:func:`bcre_ca.theory.effective_diffusion`); D
+        for the limited one, and for the calibrated one if dt is at least its calibrating step.
+        """
         self._require_synchronous("D_eff")
-        return theory.effective_diffusion(self.v, self.D, self.d, self.dt)
+        if self.scheme == "limited":
+            return self.D
+        D = self.coefficients().b * self.d**2 / self.dt
+        return theory.effective_diffusion(self.v, D, self.d, self.dt)
 
     def effective_curvature(self, R0: float = 0.0) -> float:
-        """kappa_eff = (gamma d/2)(1 - gamma R0 dt/d), R0 a uniform rolling layer."""
+        """kappa_eff of the modified equation; kappa + (gamma d/2)(1 - gamma R0 dt/d) for the upwind
+        rule under a uniform rolling layer R0, kappa for the others."""
         self._require_synchronous("kappa_eff")
-        return theory.effective_curvature(self.gamma, self.d, self.dt, R0)
+        if self.scheme != "upwind":
+            return self.kappa
+        return self.kappa + theory.effective_curvature(self.gamma, self.d, self.dt, R0)
+
+    def calibrating_step(self) -> float:
+        """Smallest dt at which the calibrated rule reaches D_eff = D: (d/v)(1 - 2 D/(v d)), or 0.
+
+        Below it the upwind flux alone diffuses more than D, (v d/2)(1 - v dt/d) > D. It is 0 for
+        cells of Peclet number v d/D <= 2, and for the other schemes.
+        """
+        if self.scheme != "calibrated" or self.v == 0:
+            return 0.0
+        return max(self.d / self.v * (1 - 2 * self.D / (self.v * self.d)), 0.0)
 
     def _require_synchronous(self, what: str) -> None:
         if self.order != "synchronous":

@@ -13,6 +13,10 @@ from the old state; the in-place rules visit the cells one after the other and r
 Ends: ``"open"`` has a closed top (no flux into cell 0) and an open foot, where R leaves by
 advection and the surface goes on at the repose slope, so that nothing is exchanged in the last
 cell. ``"periodic"`` joins the ends in R and in the height above the repose line, u = h + Sc x.
+
+A calibrated rule, a curvature term and a saturated exchange change what is eroded
+(:mod:`bcre_ca.exchange`) and the coefficients (:mod:`bcre_ca.coefficients`), not the step; the
+flux-limited rule has a step of its own (:mod:`bcre_ca.limited`).
 """
 
 from __future__ import annotations
@@ -20,6 +24,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from bcre_ca import limited
+from bcre_ca.exchange import eroded, settle
 from bcre_ca.rule import Ends, Rule
 
 Array = NDArray[np.float64]
@@ -39,30 +45,38 @@ def step(h: Array, R: Array, rule: Rule, ends: Ends = "open") -> tuple[Array, Ar
     h, R: the new layers, shape (N,).
     outflow: what left through the foot, in units of R (times d: an area).
     """
+    if rule.scheme == "limited":
+        fall = period_drop(rule, h.size) if ends == "periodic" else None
+        return limited.step(h, R, rule.coefficients(), fall)
     if rule.order == "synchronous":
         return _synchronous(h, R, rule, ends)
     return _in_place(h, R, rule, ends)
 
 
 def _synchronous(h: Array, R: Array, rule: Rule, ends: Ends) -> tuple[Array, Array, float]:
-    c, b, q, k, s = rule.coefficients()
+    c, b, q, k, s, a, m, u, dry = rule.coefficients()
     if ends == "periodic":
         R_next = np.append(R[1:], R[0])
         h_next = np.append(h[1:], h[0] - period_drop(rule, h.size))
         flux_out = q * R - b * R_next
         flux_in = np.append(flux_out[-1], flux_out[:-1])
-        exchange = R * (k * ((h - h_next) - s))
+        drop = (h - h_next) - s
+        exchange = eroded(R, drop, np.append(drop[-1], drop[:-1]) - drop, k, a, m, u)
         outflow = 0.0
     else:
         flux_out = np.append(q * R[:-1] - b * R[1:], c * R[-1])
         flux_in = np.append(0.0, flux_out[:-1])
-        exchange = np.append(R[:-1] * (k * ((h[:-1] - h[1:]) - s)), 0.0)
+        drop = (h[:-1] - h[1:]) - s
+        bend = np.append(0.0, drop[:-1] - drop[1:])[: drop.size]
+        exchange = np.append(eroded(R[:-1], drop, bend, k, a, m, u), 0.0)
         outflow = float(flux_out[-1])
-    return h - exchange, R + ((flux_in - flux_out) + exchange), outflow
+    h, R = settle(h - exchange, R + ((flux_in - flux_out) + exchange), dry)
+    return h, R, outflow
 
 
 def _in_place(h: Array, R: Array, rule: Rule, ends: Ends) -> tuple[Array, Array, float]:
-    c, b, q, k, s = rule.coefficients()
+    K = rule.coefficients()
+    c, b, q, k, s = K[:5]
     h, R, last = h.copy(), R.copy(), h.size - 1
     outflow = 0.0
     for i in range(last + 1) if rule.order == "right" else range(last, -1, -1):
@@ -79,6 +93,7 @@ def _in_place(h: Array, R: Array, rule: Rule, ends: Ends) -> tuple[Array, Array,
             outflow = float(flux)
         R[i] += exchange - flux
         h[i] -= exchange
+    h, R = settle(h, R, K.dry)
     return h, R, outflow
 
 

@@ -15,6 +15,8 @@ import math
 
 from scipy.optimize import minimize_scalar
 
+from bcre_ca.coefficients import Parameters, largest_step
+
 
 def amplification(v: float, D: float, sigma: float, d: float, dt: float, z: complex) -> complex:
     """G(z), the factor per step of R(i) = z^(-i) on a frozen slope with gamma (S - Sc) = sigma."""
@@ -89,18 +91,23 @@ def uphill_front_speed(v: float, D: float, sigma: float, d: float, dt: float) ->
 def max_stable_step(
     v: float, D: float, gamma: float, d: float, largest_R: float = 0.0, deficit: float = 0.0
 ) -> float:
-    """Largest dt that keeps every weight of the rule >= 0.
+    """Largest dt of the upwind rule that keeps every weight >= 0.
 
     R: v dt/d + 2 D dt/d^2 + gamma dt max(Sc - S, 0) <= 1, the weight of a cell's own R.
     h: gamma max(R) dt/d <= 1, the weight of a cell's own u in u(i) += c (u(i+1) - u(i)).
+
+    A curvature term adds 2 kappa X dt/d^2 to the second. Of the calibrated rule the weights are
+    1 - max(c, c^2 + 2 b) - sink dt, with c = v dt/d and b = D dt/d^2, and its surface wave is
+    stable for (gamma X dt/d)^2 + 2 kappa X dt/d^2 <= 1. The limited rule lets at most twice a
+    cell's layer flow and so takes half the step in the first bound.
 
     Parameters
     ----------
     largest_R: largest rolling layer, a length.
     deficit: largest max(Sc - S, 0), a slope.
     """
-    rate = max(v / d + 2 * D / d**2 + gamma * deficit, gamma * largest_R / d)
-    return 1 / rate if rate > 0 else math.inf
+    upwind = Parameters(v, D, gamma, 0.0, d, None, None, None, None, None)
+    return float(largest_step(upwind, largest_R, gamma * deficit))
 
 
 def effective_diffusion(v: float, D: float, d: float, dt: float) -> float:

@@ -80,8 +80,19 @@ def profiles(run: Run, **labels: str) -> pd.DataFrame:
 
 def rule_of(scene: Scene) -> bcre_ca.Rule:
     """The scene's automaton; a scene whose step is "auto" gets its largest step at the start."""
-    material = scene.material
-    rule = bcre_ca.Rule(material.v, material.D, material.gamma, material.Sc, scene.d, dt=1.0)
+    material, automaton = scene.material, scene.automaton
+    rule = bcre_ca.Rule(
+        material.v,
+        material.D,
+        material.gamma,
+        material.Sc,
+        scene.d,
+        dt=1.0,
+        scheme=automaton.scheme,
+        kappa=0.0 if automaton.scheme == "upwind" else material.kappa,
+        v_up=math.inf if material.v_up is None else material.v_up,
+        dry=automaton.dry,
+    )
     if scene.time.step != "auto":
         return replace(rule, dt=scene.time.step)
     pile = bcre_ca.Pile(*scene.initial(scene.centres()))
@@ -138,6 +149,7 @@ def problem_of(
             gamma=material.gamma,
             Sc=material.Sc,
             kappa=material.kappa if kappa is None else kappa,
+            v_up=math.inf if material.v_up is None else material.v_up,
         ),
         length=scene.domain.length,
         ends=scene.domain.ends,
@@ -152,7 +164,8 @@ def effective_problem_of(scene: Scene, with_curvature: bool = True) -> bcre_pde.
     """
     rule = rule_of(scene)
     R0 = float(scene.initial(scene.centres())[1].min())
-    kappa = scene.material.kappa + (rule.effective_curvature(R0) if with_curvature else 0.0)
+    added = rule.effective_curvature(R0) - rule.kappa if with_curvature else 0.0
+    kappa = scene.material.kappa + added
     return problem_of(scene, D=rule.effective_diffusion(), kappa=kappa)
 
 

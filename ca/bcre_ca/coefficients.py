@@ -1,0 +1,160 @@
+"""The rule's constants, folded per step and cell: what every path of the automaton computes with.
+
+An absent term is None rather than 0: the type of None tells the compiler to leave it out. The
+functions here run as Python and compiled alike, since a step that follows its bounds is folded
+anew inside the compiled loop.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from numba.extending import register_jitable
+
+
+class Parameters(NamedTuple):
+    """A :class:`bcre_ca.Rule` without its dt, as compiled code takes it.
+
+    ``slope`` is the one at which the exchange vanishes. ``kappa``, ``v_up`` and ``dry`` are None
+    where the rule does without; ``calibrated`` and ``limited`` are None or True.
+    """
+
+    v: float
+    D: float
+    gamma: float
+    slope: float
+    d: float
+    kappa: float | None
+    v_up: float | None
+    dry: float | None
+    calibrated: bool | None
+    limited: bool | None
+
+
+class Coefficients(NamedTuple):
+    """``c = v dt/d``, ``b = D dt/d^2``, ``q = c + b``, ``k = gamma dt/d`` and ``s = ±Sc d`` (minus
+    for the printed sign); ``a``, ``m`` and ``u`` as :func:`bcre_ca.exchange.eroded` takes them, and
+    the thickness ``dry`` below which a layer comes to rest.
+
+    The flux out of cell i is ``q R(i) - b R(i+1)`` and the exchange ``R(i) (k (h(i) - h(i+1) -
+    s))``, in this order of operations. In a calibrated rule b is what the diffusion of the upwind
+    flux, (c/2)(1 - c), leaves of D dt/d^2, never less than 0.
+    """
+
+    c: float
+    b: float
+    q: float
+    k: float
+    s: float
+    a: float | None
+    m: float | None
+    u: float | None
+    dry: float | None
+
+
+@register_jitable  # type: ignore[untyped-decorator]
+def fold(p: Parameters, dt: float) -> Coefficients:
+    """The coefficients of a step dt."""
+    c = p.v * dt / p.d
+    b = _diffusion(p.D * dt / p.d**2, c, p.calibrated)
+    k = p.gamma * dt / p.d
+    return Coefficients(
+        c,
+        b,
+        c + b,
+        k,
+        p.slope * p.d,
+        _saturation(p.gamma, p.v_up),
+        _scaled(p.kappa, dt / p.d**2),
+        _scaled(p.calibrated, k / 2),
+        p.dry,
+    )
+
+
+@register_jitable  # type: ignore[untyped-decorator]
+def _diffusion(b: float, c: float, calibrated: bool | None) -> float:
+    if calibrated is None:
+        return b
+    return max(b - c * (1.0 - c) / 2, 0.0)
+
+
+@register_jitable  # type: ignore[untyped-decorator]
+def _saturation(gamma: float, v_up: Any) -> Any:
+    if v_up is None:
+        return None
+    return gamma / v_up
+
+
+@register_jitable  # type: ignore[untyped-decorator]
+def _scaled(value: Any, factor: float) -> Any:
+    if value is None:
+        return None
+    return value * factor
+
+
+@register_jitable  # type: ignore[untyped-decorator]
+def largest_step(p: Parameters, largest_R: float, sink: float) -> float:
+    """Largest dt that keeps R >= 0 and the surface wave stable; see :mod:`bcre_ca.theory`.
+
+    Parameters
+    ----------
+    largest_R: largest rolling layer, a length.
+    sink: fastest loss per unit of layer, max(kappa h_xx - gamma (S - Sc), 0), 1/time.
+    """
+    largest: float = _largest_step(
+        p.v / p.d,
+        p.D / p.d**2,
+        p.gamma / p.d * _exchanging(largest_R, p.gamma, p.v_up),
+        _curvature_rate(_exchanging(largest_R, p.gamma, p.v_up), p.d, p.kappa),
+        sink,
+        p.calibrated,
+        p.limited,
+    )
+    return largest
+
+
+@register_jitable  # type: ignore[untyped-decorator]
+def _exchanging(R: float, gamma: float, v_up: float | None) -> float:
+    if v_up is None:
+        return R
+    return R / (1.0 + gamma * R / v_up)
+
+
+@register_jitable  # type: ignore[untyped-decorator]
+def _curvature_rate(X: float, d: float, kappa: float | None) -> float:
+    if kappa is None:
+        return 0.0
+    return kappa * X / d**2
+
+
+@register_jitable  # type: ignore[untyped-decorator]
+def _largest_step(
+    drift: float,
+    spread: float,
+    climb: float,
+    bending: float,
+    sink: float,
+    calibrated: bool | None,
+    limited: bool | None,
+) -> float:
+    of_layer: float = _inverse(drift + 2 * spread + sink)
+    of_wave: float = _inverse(climb + 2 * bending)
+    if limited is not None:
+        of_layer = of_layer / 2
+    if calibrated is not None:
+        of_layer = min(_inverse(drift + sink), _step_of_quadratic(drift, 2 * spread + sink))
+        of_wave = _step_of_quadratic(climb, 2 * bending)
+    return min(of_layer, of_wave)
+
+
+@register_jitable  # type: ignore[untyped-decorator]
+def _step_of_quadratic(p: float, q: float) -> float:
+    """Largest t with (p t)^2 + q t <= 1."""
+    step: float = 2.0 * _inverse(q + math.sqrt(q * q + 4 * p * p))
+    return step
+
+
+@register_jitable  # type: ignore[untyped-decorator]
+def _inverse(rate: float) -> float:
+    return 1.0 / rate if rate > 0 else math.inf
