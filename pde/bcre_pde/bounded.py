@@ -45,7 +45,7 @@ class BoundedRungeKutta(RungeKuttaSolver):  # type: ignore[misc]
 
         def relative_single_step(data: Array, t: float, dt: float) -> tuple[Array, float]:
             step(data, t, dt, new)
-            weighted_sum(nothing, step.increments, FEHLBERG_ERROR, FEHLBERG_ERROR.size, error)
+            weighted_sum(nothing, step.increments, FEHLBERG_ERROR, FEHLBERG_ERROR.size, 1.0, error)
             return new, float(np.abs(error, out=error).max()) / layer_scale(new[1])
 
         return relative_single_step

@@ -92,12 +92,13 @@ class BCRE(PDEBase):  # type: ignore[misc]
         self.evaluations = 0
         self.most_evaluations = most_evaluations
         self.last_time = 0.0
-        self.last_layers = np.zeros((3, cells))
+        self._layers = np.zeros((3, cells))
+        self.last_layers = self._layers
         self._rate = self.state(grid, np.zeros(cells), np.zeros(cells))
         self._scratch = np.empty((2, cells + 2 * fluxes.GHOSTS)), np.empty((2, cells + 1))
         self._coefficients = (
             material.v,
-            material.D,
+            material.D or None,
             material.gamma,
             material.kappa or None,
             self.dx,
@@ -118,7 +119,8 @@ class BCRE(PDEBase):  # type: ignore[misc]
 
     def evolution_rate(self, state: FieldCollection, t: float = 0) -> FieldCollection:
         """The right-hand side, in one field that every call overwrites (py-pde copies it)."""
-        self.write_rate(state.data, self._rate.data, t)
+        np.copyto(self._layers, state.data)  # SciPy's memory may not last until a failure is told
+        self.write_rate(self._layers, self._rate.data, t)
         return self._rate
 
     def write_rate(self, layers: Array, out: Array, t: float = 0) -> None:
@@ -131,7 +133,7 @@ class BCRE(PDEBase):  # type: ignore[misc]
         """
         self.evaluations += 1
         self.last_time = t
-        np.copyto(self.last_layers, layers)
+        self.last_layers = layers
         if self.evaluations > self.most_evaluations:
             raise RuntimeError(
                 f"the right-hand side was evaluated {self.most_evaluations:.6g} times, the most "

@@ -89,18 +89,24 @@ class Step:
     def __call__(self, layers: Array, t: float, dt: float, new: Array) -> None:
         """Write y(t + dt) into ``new``; ``layers`` and ``new`` have shape (3, N)."""
         a, b, c = self._method
-        for i, increment in enumerate(self.increments):
-            weighted_sum(layers, self.increments, a[i], i, self._stage)
-            self._equation.write_rate(self._stage, increment, t + c[i] * dt)
-            _scale(increment, dt)
-        weighted_sum(layers, self.increments, b, b.size, new)
+        k = self.increments
+        for i in range(b.size):
+            weighted_sum(layers, k, a[i], i, dt, self._stage)
+            self._equation.write_rate(self._stage, k[i], t + c[i] * dt)
+        weighted_sum(layers, k, b, b.size, dt, new)
 
 
 @numba.njit(cache=True, error_model="numpy")
-def weighted_sum(start, terms, weights, count, out):  # type: ignore[no-untyped-def]
-    """out = start + sum of the first ``count`` weights times terms, but for weights of zero."""
+def weighted_sum(start, terms, weights, count, dt, out):  # type: ignore[no-untyped-def]
+    """out = start + sum of the first ``count`` weights times terms, but for weights of zero.
+
+    The last of the terms arrives as a rate and is multiplied by ``dt``, in place, first.
+    """
     rows, cells = out.shape
     for row in range(rows):
+        if count > 0:
+            for i in range(cells):
+                terms[count - 1, row, i] *= dt
         for i in range(cells):
             out[row, i] = start[row, i]
         for k in range(count):
@@ -108,11 +114,3 @@ def weighted_sum(start, terms, weights, count, out):  # type: ignore[no-untyped-
             if weight != 0.0:
                 for i in range(cells):
                     out[row, i] += weight * terms[k, row, i]
-
-
-@numba.njit(cache=True, error_model="numpy")
-def _scale(values, factor):  # type: ignore[no-untyped-def]
-    rows, cells = values.shape
-    for row in range(rows):
-        for i in range(cells):
-            values[row, i] *= factor

@@ -42,7 +42,7 @@ def rate(  # type: ignore[no-untyped-def]
     state, out: shape (3, N): u; R; and of the third row, used for open ends only, the first cell
         holds u on the foot and the last one the outflow so far divided by N dx.
     padded, faces: scratch of shapes (2, N + 6) and (2, N + 1).
-    v, D, gamma, kappa: the material, kappa None without curvature term; dx the cell length.
+    v, D, gamma, kappa: the material, D or kappa None without that term; dx the cell length.
     periodic: whether the ends are joined.
     saturation: gamma/v_up, or None for the linear exchange law.
     """
@@ -52,7 +52,7 @@ def rate(  # type: ignore[no-untyped-def]
     _climbing_face(padded[0], u_face, n)
     _rolling_flux(padded[1], flux, v, D, dx, n)
     if not periodic:
-        _rolling_flux_at_open_ends(state[1], flux, v, D, dx, n)
+        _rolling_flux_at_open_ends(state[1], flux, v, 0.0 if D is None else D, dx, n)
     _change(padded[0], state[1], u_face, flux, out, gamma, kappa, dx, n, saturation)
     if not periodic:
         foot = state[2, 0]
@@ -109,12 +109,12 @@ def _climbing_face(u, face, n):  # type: ignore[no-untyped-def]
 @_compiled
 def _rolling_flux(R, flux, v, D, dx, n):  # type: ignore[no-untyped-def]
     """F at face f, between cells f - 1 and f; R carries three ghost cells."""
-    spread = D / (180 * dx)
+    spread = None if D is None else D / (180 * dx)
     R0, R1, R2, R3, R4, R5 = R[0:], R[1:], R[2:], R[3:], R[4:], R[5:]
     for f in range(n + 1):
         carried = _face_value(R0[f], R1[f], R2[f], R3[f], R4[f])
         difference = 245 * (R3[f] - R2[f]) - 25 * (R4[f] - R1[f]) + 2 * (R5[f] - R0[f])
-        flux[f] = v * carried - spread * difference
+        flux[f] = v * carried if spread is None else v * carried - spread * difference
 
 
 @_compiled

@@ -12,11 +12,11 @@ law = exchange.exchange.py_func
 GAMMA, KAPPA, SATURATION = 0.7, 0.3, 1.75
 
 
-def arguments(n, kappa, saturation, periodic=False, seed=3):
+def arguments(n, kappa, saturation, periodic=False, seed=3, D=0.2):
     rng = np.random.default_rng(seed)
     state = np.array([rng.normal(size=n), rng.uniform(-0.5, 3, n), rng.normal(size=n)])
     scratch = np.empty((2, n + 6)), np.empty((2, n + 1))
-    return state, np.empty((3, n)), *scratch, 1.3, 0.2, GAMMA, kappa, 0.5, periodic, saturation
+    return state, np.empty((3, n)), *scratch, 1.3, D, GAMMA, kappa, 0.5, periodic, saturation
 
 
 def test_linear_law_is_gamma_R_times_the_excess_slope_and_kappa_R_times_the_curvature():
@@ -62,8 +62,8 @@ def test_compiled_right_hand_side_holds_the_law_of_the_module(kappa, saturation)
 @pytest.mark.parametrize("seed", range(5))
 def test_absent_term_is_a_term_of_zero_to_the_bit(periodic, seed):
     rates = []
-    for kappa, saturation in itertools.product((None, 0.0), (None, 0.0)):
-        given = arguments(40, kappa, saturation, periodic, seed)
+    for D, kappa, saturation in itertools.product((None, 0.0), repeat=3):
+        given = arguments(40, kappa, saturation, periodic, seed, D)
         fluxes.rate(*given)
         rates.append(given[1])
     assert all(np.array_equal(rates[0], other) for other in rates)
