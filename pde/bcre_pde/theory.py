@@ -156,9 +156,9 @@ def stable(
 ) -> bool:
     """Whether |P(lambda dt)| <= 1 for all waves of R and of u, smooth and limited alike.
 
-    The limited ones decide where drift and diffusion act together. Rough data bear this boundary
-    out within 2 % for "runge-kutta" and "RK45". It promises too much for "DOP853" where drift or
-    climb matters most: what the limiter does differs from stage to stage of the twelve, so that
+    The limited ones decide where drift and diffusion act together: rough data start to grow within
+    3 % of their boundary for "runge-kutta" and "RK45". For "DOP853" it promises too much where
+    drift or climb matters most: what the limiter does differs between its twelve stages, so that
     the step is no polynomial in lambda, and rough data grow from a Courant number of 2.0 on
     instead of 3.2.
     """

@@ -72,7 +72,7 @@ def says_where(failure, method):
 def test_solver_that_meets_no_number_gives_up_with_cell_and_time(monkeypatch):
     def rate(state, out, *rest):
         out[...] = 0.0
-        out[1, 17] = math.nan
+        out[1, 17] = out[1, 30] = math.nan  # the first is named
 
     monkeypatch.setattr(fluxes, "rate", rate)
     for method in METHODS:
