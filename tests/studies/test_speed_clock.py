@@ -64,6 +64,14 @@ def test_call_slow_once_while_its_repeats_are_sought_is_still_repeated_enough(fa
     assert clock.repeats_needed(call) * tick >= clock.LEAST_S
 
 
+def test_ratio_is_taken_within_rounds_so_that_a_slow_round_leaves_it_alone(fake):
+    """Rounds 2 to 4 are ten, twenty and thirty times slower, and round 5 disturbs one call only."""
+    a = fake.call("a", 1.0, 1.0, 4.0, 40.0, 80.0, 120.0, 12.0)
+    b = fake.call("b", 1.0, 1.0, 2.0, 20.0, 40.0, 60.0, 2.0)
+    timed = clock.take_turns({"a": a, "b": b})
+    assert timed.ratio("a", "b") == (2.0, 2.0, 6.0)
+
+
 def test_further_rounds_are_taken_until_the_budget_is_spent(fake):
     table = clock.interleaved({"a": fake.call("a", 1.0), "b": fake.call("b", 2.0)}, budget_s=30)
     assert list(table["rounds"]) == [10, 10]

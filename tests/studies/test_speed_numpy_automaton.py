@@ -74,5 +74,5 @@ def test_saturated_law_is_refused():
 
 
 def test_in_place_orders_are_refused():
-    with pytest.raises(ValueError, match="order = 'left': must be 'synchronous'"):
+    with pytest.raises(ValueError, match=r"order='left'.*: must be the paper's synchronous rule"):
         numpy_automaton.march(np.ones(3), np.ones(3), Rule(1, 0, 0, 0, 1, 1, order="left"), 1)

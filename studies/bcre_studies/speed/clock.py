@@ -11,6 +11,7 @@ import math
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
@@ -26,22 +27,57 @@ LEAST_S = 0.02
 """Shorter calls are repeated for this long within a round, in seconds: 10^5 ticks of the clock."""
 
 
+@dataclass(frozen=True)
+class Timed:
+    """Seconds per call: ``first_s`` of each call, and of every round, ``rounds_s`` (round by name)."""
+
+    first_s: dict[str, float]
+    repeats: dict[str, int]
+    rounds_s: pd.DataFrame
+
+    def table(self) -> pd.DataFrame:
+        """One row per call: name; first_s; median_s, smallest_s, largest_s; rounds; repeats."""
+        each = self.rounds_s.to_numpy()
+        return pd.DataFrame(
+            {
+                "name": list(self.first_s),
+                "first_s": list(self.first_s.values()),
+                "median_s": np.median(each, axis=0),
+                "smallest_s": each.min(axis=0),
+                "largest_s": each.max(axis=0),
+                "rounds": len(each),
+                "repeats": list(self.repeats.values()),
+            }
+        )
+
+    def ratio(self, slower: str, faster: str) -> tuple[float, float, float]:
+        """How many times longer one call takes than another: median, smallest, largest by round.
+
+        What disturbs a whole round leaves its ratio alone, unlike the ratio of two medians.
+        """
+        by_round = self.rounds_s[slower] / self.rounds_s[faster]
+        return float(by_round.median()), float(by_round.min()), float(by_round.max())
+
+
 def interleaved(
     calls: Mapping[str, Call], rounds: int = LEAST_ROUNDS, budget_s: float = 0.0
 ) -> pd.DataFrame:
+    """The table of :func:`take_turns`."""
+    return take_turns(calls, rounds, budget_s).table()
+
+
+def take_turns(
+    calls: Mapping[str, Call], rounds: int = LEAST_ROUNDS, budget_s: float = 0.0
+) -> Timed:
     """Seconds per call, cold and warm.
 
     Parameters
     ----------
     calls: what to time, by name. The first call of each is its first use, so it must do there
         what a user waits for (compile, set up), and nothing may have called it before.
-    rounds: number of rounds, at least 5, in each of which every call has a turn.
+    rounds: number of rounds, at least 5, in each of which every call has a turn. Of a call that
+        is repeated within its turn, the mean counts.
     budget_s: further rounds are taken until so many seconds have passed since the first.
-
-    Returns
-    -------
-    One row per call: name; first_s, its first use; median_s, smallest_s and largest_s over the
-    rounds, each the mean over the repeats within a round; rounds; repeats.
 
     Raises
     ------
@@ -63,22 +99,11 @@ def interleaved(
 
         first = {name: seconds(begins(name), 1) for name in calls}
         repeats = {name: repeats_needed(begins(name)) for name in calls}
-        taken: list[list[float]] = []
+        taken: list[dict[str, float]] = []
         began = time.perf_counter()
         while len(taken) < rounds or time.perf_counter() - began < budget_s:
-            taken.append([seconds(begins(name), repeats[name]) for name in calls])
-    each = np.array(taken)
-    return pd.DataFrame(
-        {
-            "name": list(calls),
-            "first_s": list(first.values()),
-            "median_s": np.median(each, axis=0),
-            "smallest_s": each.min(axis=0),
-            "largest_s": each.max(axis=0),
-            "rounds": len(taken),
-            "repeats": list(repeats.values()),
-        }
-    )
+            taken.append({name: seconds(begins(name), repeats[name]) for name in calls})
+    return Timed(first, repeats, pd.DataFrame(taken))
 
 
 def seconds(call: Call, repeats: int) -> float:

@@ -24,11 +24,11 @@ def prepare(problem: Problem, until: float, cells: int, dt: float) -> Solve:
     Raises
     ------
     ValueError
-        for kappa > 0, which the nominal rule does not have.
+        for kappa > 0, which the paper's rule does not have.
     """
     material = problem.material
     if material.kappa != 0:
-        raise ValueError(f"kappa = {material.kappa!r}: must be 0, the rule has no such term")
+        raise ValueError(f"kappa = {material.kappa!r}: must be 0, as in the paper's rule")
     x, steps = centres(problem, cells), whole_steps(until, dt)
     rule = bcre_ca.Rule(
         material.v, material.D, material.gamma, material.Sc, problem.length / cells, dt
@@ -54,10 +54,10 @@ def march(
     Raises
     ------
     ValueError
-        for the in-place orders, which are not a matter of whole arrays.
+        for any rule but the paper's synchronous one.
     """
-    if rule.order != "synchronous":
-        raise ValueError(f"order = {rule.order!r}: must be 'synchronous'")
+    if rule != bcre_ca.Rule(rule.v, rule.D, rule.gamma, rule.Sc, rule.d, rule.dt, rule.sign):
+        raise ValueError(f"{rule}: must be the paper's synchronous rule and nothing more")
     fold = rule.coefficients()
     drop = rule.Sc * rule.d * h.size
     flux, exchange, scratch = np.zeros_like(h), np.zeros_like(h), np.zeros_like(h)
