@@ -29,7 +29,7 @@ LEAST_S = 0.02
 
 @dataclass(frozen=True)
 class Timed:
-    """Seconds per call: ``first_s`` of each call, and of every round, ``rounds_s`` (round by name)."""
+    """Seconds per call: ``first_s`` of the first, ``rounds_s`` of every round (rounds, names)."""
 
     first_s: dict[str, float]
     repeats: dict[str, int]
