@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import signal
 import sys
+import threading
 from pathlib import Path
 from typing import Literal
 
 import click
+
+from bcre_studies.line import one_line
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -59,12 +63,14 @@ def run(
 ) -> None:
     """Run SCENE, a built-in name or a TOML file; write profiles.csv and summary.json."""
     from bcre_studies.report.files import require_writable
-    from bcre_studies.run import run_scene, write_run
     from bcre_studies.scene import load
 
     folder = Path("out") / Path(scene).stem if out is None else out
-    require_writable(folder, ("profiles.csv", "summary.json"))
-    summary = write_run(run_scene(load(scene, assignments), model, frames), folder)
+    require_writable("--out", folder, ("profiles.csv", "summary.json"))
+    loaded = load(scene, assignments)  # what is refused here need not wait for the solvers
+    from bcre_studies.run import run_scene, write_run
+
+    summary = write_run(run_scene(loaded, model, frames), folder)
     for name, numbers in summary.items():
         facts = ", ".join(f"{key} {_short(value)}" for key, value in numbers.items())
         click.echo(f"{name}: {facts}")
@@ -81,13 +87,11 @@ def run_studies(names: tuple[str, ...]) -> None:
         if name not in STUDIES:
             allowed = ", ".join(STUDIES)
             raise click.UsageError(f"NAME = {name!r}: must be one of {allowed}")
-    from bcre_studies.report.write import find, write_study
+    from bcre_studies.report.write import write_studies
 
-    for name in names:
-        finding = find(name)
-        write_study(finding)
+    for finding in write_studies(names):
         for claim in finding.claims:
-            click.echo(f"{name}: {claim.statement} {claim.verdict}: {claim.evidence}.")
+            click.echo(f"{finding.name}: {claim.statement} {claim.verdict}: {claim.evidence}.")
 
 
 @app.command()
@@ -126,6 +130,8 @@ def _short(value: object) -> str:
 
 def main() -> None:
     """Run the command; bad input ends in one line on standard error and exit 2."""
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends the workers too
     try:
         app(standalone_mode=False)
     except click.exceptions.NoArgsIsHelpError as error:
@@ -137,8 +143,10 @@ def main() -> None:
         sys.exit(130)
     except (ValueError, OSError) as error:
         _refuse(str(error))
+    except MemoryError as error:
+        _refuse(f"not enough memory: {error}")
 
 
 def _refuse(message: str) -> None:
-    click.echo(f"bcre: {' '.join(message.split())}", err=True)
+    click.echo(f"bcre: {one_line(message)}", err=True)
     sys.exit(2)

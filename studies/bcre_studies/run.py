@@ -5,20 +5,21 @@ from __future__ import annotations
 import json
 import math
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-import pandas as pd
 from rich.console import Console
 from rich.progress import Progress
 
 import bcre_ca
 import bcre_pde
+from bcre_studies import memory
 from bcre_studies.compare import SHARE, sample
 from bcre_studies.profiles import Array
-from bcre_studies.report.files import replace_text
+from bcre_studies.report.files import replace_file, replace_text
 from bcre_studies.scene import Scene, SceneError
 from bcre_studies.simulate import (
     Run,
@@ -30,6 +31,8 @@ from bcre_studies.simulate import (
     run_automaton,
 )
 
+Which = Literal["ca", "pde", "both"]
+
 ALONE = 1e-3
 """Relative error that the PDE is refined to where there is no automaton to compare it with."""
 
@@ -40,43 +43,73 @@ MOST_STEPS = {"ca": 10**9, "pde": 10**8}
 """A run that would take more is refused: it would not end within a working day."""
 
 
-def run_scene(scene: Scene, model: Literal["ca", "pde", "both"], frames: int) -> list[Run]:
+def run_scene(scene: Scene, model: Which, frames: int) -> list[Run]:
     """The scene in the models asked for, recorded at equally spaced times from 0 to its end.
 
     Raises
     ------
     SceneError
-        where the scene's step is not stable, or not for as long as the scene lasts; where the
-        PDE's solver gives up; where numbers are too large or too small to compute with.
+        where :func:`require_runnable` refuses it; where the scene's step is not stable, or not for
+        as long as the scene lasts; where the PDE's solver gives up.
     """
-    times = frame_times(scene, frames)
+    require_runnable(scene, model, frames)
     runs: list[Run] = []
+    with _failures_told_by_key(scene):
+        times = frame_times(scene, frames)
+        if model in ("ca", "both"):
+            runs.append(_run_ca(scene, times))
+        if model in ("pde", "both"):
+            runs.append(_run_pde(scene, times, runs[0] if runs else None))
+    return runs
+
+
+def require_runnable(scene: Scene, model: Which, frames: int) -> None:
+    """What can be known before a run is started.
+
+    Raises
+    ------
+    SceneError
+        where the run would not fit into memory, or not end; where numbers are too large or too
+        small to compute with.
+    """
+    with _failures_told_by_key(scene):
+        needed = memory.estimate(scene, model, frames, _finest(scene))
+        memory.require(f"{_grids(scene)} with --frames = {frames}", needed)
+        _, R = scene.initial(scene.centres())  # tells an overflow from an unstable step
+        if model in ("ca", "both"):
+            _refuse_endless(scene, "ca", scene.time.until / rule_of(scene).dt)
+        if model in ("pde", "both"):
+            grid = scene.solver.cells or COARSEST
+            bound = bcre_pde.largest_explicit_step(
+                problem_of(scene).material, scene.domain.length / grid, float(R.max())
+            )
+            _refuse_endless(scene, "pde", scene.time.until / bound)
+
+
+@contextmanager
+def _failures_told_by_key(scene: Scene) -> Iterator[None]:
+    """Floating-point errors are raised; what a run can fail of names a key of the scene."""
     try:
         with (
             np.errstate(over="raise", divide="raise", invalid="raise"),
             warnings.catch_warnings(action="ignore", category=UserWarning),  # SciPy's, on tolerance
         ):
-            _, R = scene.initial(scene.centres())  # tells an overflow from an unstable step
-            if model in ("ca", "both"):
-                _refuse_endless(scene, "ca", scene.time.until / rule_of(scene).dt)
-                runs.append(_run_ca(scene, times))
-            if model in ("pde", "both"):
-                grid = scene.solver.cells or COARSEST
-                bound = bcre_pde.largest_explicit_step(
-                    problem_of(scene).material, scene.domain.length / grid, float(R.max())
-                )
-                _refuse_endless(scene, "pde", scene.time.until / bound)
-                runs.append(_run_pde(scene, times, runs[0] if runs else None))
+            yield
+    except memory.NotEnoughMemoryError as failure:
+        raise SceneError(str(failure)) from None
+    except MemoryError as failure:  # what was free has been taken by another meanwhile
+        raise SceneError(f"{_grids(scene)}: {failure or 'took all memory there is'}") from None
     except bcre_pde.SolveError as failure:
         raise SceneError(
             f"solver.method = {scene.solver.method!r}: {failure}; must be a method that can solve "
             f"this scene to solver.tolerance = {scene.solver.tolerance!r}"
         ) from None
-    except ArithmeticError as failure:
+    except SceneError:
+        raise
+    except (ArithmeticError, ValueError) as failure:
         raise SceneError(
             f"{_most_extreme(scene)}: must be nearer to 1, it cannot be computed with ({failure})"
         ) from None
-    return runs
 
 
 def _run_ca(scene: Scene, times: Sequence[float]) -> Run:
@@ -85,6 +118,19 @@ def _run_ca(scene: Scene, times: Sequence[float]) -> Run:
     except (bcre_ca.UnstableStep, FloatingPointError) as failure:
         step = scene.time.step
         raise SceneError(f"time.step = {step!r}: {failure}, or be 'auto'") from None
+
+
+def _grids(scene: Scene) -> str:
+    own = "" if scene.solver.cells is None else f" and solver.cells = {scene.solver.cells!r}"
+    return f"domain.cells = {scene.domain.cells!r}{own}"
+
+
+def _coarsest(scene: Scene) -> int:
+    return max(scene.domain.cells, COARSEST)
+
+
+def _finest(scene: Scene) -> int:
+    return scene.solver.cells or max(FINEST, 4 * _coarsest(scene))
 
 
 def _refuse_endless(scene: Scene, model: str, steps: float) -> None:
@@ -144,14 +190,13 @@ def _run_pde(scene: Scene, times: Sequence[float], automaton: Run | None) -> Run
         options = {"method": scene.solver.method, "tolerance": scene.solver.tolerance, "stop": show}
         if scene.solver.cells is not None:
             return _on_given_grid(scene, scene.solver.cells, times, measure, options)
-        coarsest = max(scene.domain.cells, COARSEST)
         refined = bcre_pde.solve_refined(
             problem_of(scene),
             times,
             measure,
             allowed,
-            coarsest=coarsest,
-            finest=max(FINEST, 4 * coarsest),
+            coarsest=_coarsest(scene),
+            finest=_finest(scene),
             **options,
         )
     return as_run(scene, refined.solution, refined.error)
@@ -180,9 +225,15 @@ def _on_given_grid(
 
 def write_run(runs: Sequence[Run], folder: Path) -> dict[str, Any]:
     """Write ``profiles.csv`` and ``summary.json``; return the summary."""
-    table = pd.concat([profiles(run, model=run.model) for run in runs], ignore_index=True)
     summary: dict[str, Any] = {run.model: summarise(run) for run in runs}
-    replace_text(folder / "profiles.csv", table.to_csv(index=False, lineterminator="\n"))
+
+    def write(path: Path) -> None:
+        with path.open("w", encoding="utf-8", newline="") as file:
+            for run in runs:  # one after the other: the text of both is large
+                table = profiles(run, model=run.model)
+                table.to_csv(file, index=False, header=run is runs[0], lineterminator="\n")
+
+    replace_file(folder / "profiles.csv", write)
     replace_text(folder / "summary.json", json.dumps(summary, indent=2) + "\n")
     return summary
 

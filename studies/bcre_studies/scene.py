@@ -15,6 +15,8 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
+from bcre_studies.line import one_line
+from bcre_studies.memory import NotEnoughMemoryError
 from bcre_studies.profiles import (
     Array,
     NonNegative,
@@ -31,18 +33,40 @@ from bcre_studies.tables import ProfileError
 BUILT_IN = Path(__file__).parent / "scenes"
 
 
+LONGEST = 100_000
+"""Bytes of a scene file; it is a page of text, long profiles belong into tables."""
+
+WIDEST = 1_000
+"""Characters of one of its lines; keys of very many parts would take hours to be read."""
+
+
 class SceneError(ValueError):
     """A scene that cannot be run; its text is one line naming key, value and what is allowed."""
 
+    def __init__(self, message: str) -> None:
+        super().__init__(one_line(message))
+
 
 class SceneMaterial(StrictTable):
-    """``[material]``: the coefficients of both models; kappa is BCRE's curvature term."""
+    """``[material]``: the coefficients of both models.
+
+    kappa is BCRE's curvature term, which the paper's rule does not have and the calibrated and the
+    limited one take over; ``v_up`` makes the exchange that of thick flows.
+    """
 
     v: NonNegative
     D: NonNegative
     gamma: NonNegative
     Sc: NonNegative
     kappa: NonNegative = 0.0
+    v_up: Positive | None = None
+
+
+class Automaton(StrictTable):
+    """``[automaton]``: its scheme, and the thickness below which a layer comes to rest."""
+
+    scheme: Literal["upwind", "calibrated", "limited"] = "upwind"
+    dry: NonNegative = 0.0
 
 
 class Domain(StrictTable):
@@ -77,6 +101,7 @@ class Scene(StrictTable):
     time: Time
     surface: tuple[SurfaceTerm, ...] = ()
     rolling: tuple[RollingTerm, ...] = ()
+    automaton: Automaton = Automaton()
     solver: Solver = Solver()
     _folder: Path = PrivateAttr(default_factory=Path)
 
@@ -181,6 +206,7 @@ SECTIONS: dict[str, type[StrictTable]] = {
     "material": SceneMaterial,
     "domain": Domain,
     "time": Time,
+    "automaton": Automaton,
     "solver": Solver,
 }
 
@@ -226,21 +252,27 @@ def _toml_value(text: str) -> Any:
 
 def _read(path: Path) -> str:
     names = ", ".join(built_in_names())
-    if not path.is_file():
-        raise SceneError(f"{path}: no such scene; must be a TOML file or one of {names}")
     try:
-        return path.read_text(encoding="utf-8")
+        if not path.is_file():
+            raise SceneError(f"{path}: no such scene; must be a TOML file or one of {names}")
+        if path.stat().st_size > LONGEST:
+            raise SceneError(f"{path}: must be a TOML file of at most {LONGEST} bytes")
+        text = path.read_text(encoding="utf-8")
     except UnicodeDecodeError:
         raise SceneError(f"{path}: must be UTF-8 text") from None
     except OSError as error:
         raise SceneError(f"{path}: cannot be read: {error.strerror}") from None
+    if max(map(len, text.splitlines()), default=0) > WIDEST:
+        raise SceneError(f"{path}: must be a TOML file with at most {WIDEST} characters a line")
+    return text
 
 
 def _validated(data: dict[str, Any], folder: Path) -> Scene:
+    _refuse_long_integers(data)
     try:
         scene = Scene.model_validate(data)
     except ValidationError as failure:
-        raise SceneError(_one_line(failure)) from None
+        raise SceneError(_first_of(failure)) from None
     scene._folder = folder
     try:
         for index, surface in enumerate(scene.surface):
@@ -249,12 +281,27 @@ def _validated(data: dict[str, Any], folder: Path) -> Scene:
         for index, rolling in enumerate(scene.rolling):
             if isinstance(rolling, TableRolling):
                 rolling.load(f"rolling.{index}", folder, scene)
-    except ProfileError as failure:
+    except (ProfileError, NotEnoughMemoryError) as failure:
         raise SceneError(str(failure)) from None
     return scene
 
 
-def _one_line(failure: ValidationError) -> str:
+def _refuse_long_integers(data: dict[str, Any]) -> None:
+    """Integers are of 64 bits in TOML; longer ones cannot even be shown."""
+    todo: list[tuple[str, Any]] = [("", data)]
+    while todo:
+        key, value = todo.pop()
+        if isinstance(value, dict):
+            todo += [(f"{key}.{name}", part) for name, part in value.items()]
+        elif isinstance(value, list):
+            todo += [(f"{key}.{index}", part) for index, part in enumerate(value)]
+        elif isinstance(value, int) and value.bit_length() > 63:
+            raise SceneError(
+                f"{key[1:]} = an integer of {value.bit_length()} bits: must be one of at most 63"
+            )
+
+
+def _first_of(failure: ValidationError) -> str:
     errors = failure.errors()
     # Of a choice (a number or "auto") every alternative reports; the first one speaks for all.
     error = errors[0]
@@ -284,5 +331,8 @@ def _one_line(failure: ValidationError) -> str:
 
 
 def _short(value: object) -> str:
-    text = repr(value)
+    try:
+        text = repr(value)
+    except (RecursionError, ValueError):
+        return f"({type(value).__name__} too long or too deep to be shown)"
     return text if len(text) <= 80 else f"{text[:77]}..."

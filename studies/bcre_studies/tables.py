@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from bcre_studies.memory import require
+
 if TYPE_CHECKING:
     from bcre_studies.scene import Scene
 
@@ -18,6 +20,9 @@ Array = NDArray[np.float64]
 
 LARGEST = 1e100
 """Heights and layers beyond this leave no room to compute with them."""
+
+READ = 50
+"""Bytes of memory that a byte of a CSV file may take while it is read."""
 
 JUMP = 4.0
 """A periodic profile may change this many times faster across the ends than anywhere inside."""
@@ -61,12 +66,13 @@ def read_table(key: str, path: Path, column: str, scene: Scene) -> tuple[Array, 
 
 def _rows(path: Path, refuse: Callable[[str], ProfileError]) -> tuple[list[str], list[list[str]]]:
     """Head and rows of a CSV file in which every row has as many fields as the head."""
-    if not path.is_file():
-        raise refuse("no such file; must be a CSV file, its path relative to the scene file")
     try:
+        if not path.is_file():
+            raise refuse("no such file; must be a CSV file, its path relative to the scene file")
+        require(str(refuse("its rows")), READ * path.stat().st_size)
         with path.open(encoding="utf-8-sig", newline="") as file:
             lines = [row for row in csv.reader(file, strict=True) if row]
-    except (ValueError, OSError, csv.Error) as error:
+    except (UnicodeDecodeError, OSError, csv.Error) as error:
         raise refuse(f"must be a CSV file in UTF-8: {' '.join(str(error).split())[:100]}") from None
     if not lines:
         raise refuse("is empty; must be a CSV file with a head")

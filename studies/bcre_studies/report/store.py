@@ -3,21 +3,27 @@
 The tables of a study are kept under a key of everything that they depend on: the sources of both
 models, of the shared study modules and of the study itself, the scenes, and the versions of
 the numerical libraries. A file that is damaged or half-written fails its digest and is redone.
+While a study is being measured a folder of that name keeps its finished cases, and a second run
+waits for the first.
 """
 
 from __future__ import annotations
 
 import hashlib
-import pickle
+import os
 import platform
+import re
+from contextlib import suppress
 from importlib.metadata import version
 from pathlib import Path
 
 import pandas as pd
 
+from bcre_studies import work
 from bcre_studies.catalog import STUDIES, study
 from bcre_studies.compare import significant
-from bcre_studies.report.files import CACHE, replace_bytes
+from bcre_studies.report import pickles
+from bcre_studies.report.files import CACHE, remove_abandoned, require_writable, sweep, workshop
 
 Tables = dict[str, pd.DataFrame]
 
@@ -25,28 +31,50 @@ LIBRARIES = ("numpy", "scipy", "numba", "py-pde", "pandas")
 DIGITS = 5
 """Significant digits of the curves behind a figure; a comparison is rounded by its own errors."""
 
+KEPT = 3
+"""So many states of a study's sources keep their tables; the others are forgotten."""
+
 
 def tables_of(name: str) -> Tables:
     """The tables of a study: from the store where it has them, else measured now and stored."""
-    path = CACHE / f"{name}-{_key(name)}.pickle"
+    entry = f"{name}-{_key(name)}"
+    path, cases = CACHE / f"{entry}.pickle", CACHE / entry
     tables = _load(path)
     if tables is None:
-        tables = {key: _rounded(table) for key, table in study(name).run().items()}
-        content = pickle.dumps(tables)
-        replace_bytes(path, hashlib.sha256(content).digest() + content)
+        require_writable(".cache", CACHE)
+        with workshop(cases, f"bcre: waiting for another run that measures {name}"):
+            tables = _load(path)
+            if tables is None:
+                with work.kept(cases):
+                    measured = study(name).run()
+                tables = {key: _rounded(table) for key, table in measured.items()}
+                pickles.dump(path, tables)
+        _forget_old(name)
     return tables
 
 
 def _load(path: Path) -> Tables | None:
     try:
-        stored = path.read_bytes()
-    except OSError:
+        tables: Tables = pickles.load(path)
+    except LookupError:
         return None
-    digest, content = stored[:32], stored[32:]
-    if hashlib.sha256(content).digest() != digest:
-        return None
-    tables: Tables = pickle.loads(content)
+    with suppress(OSError):
+        os.utime(path)  # when it was last of use
     return tables
+
+
+def _forget_old(name: str) -> None:
+    """Remove all but the latest tables of a study, and what measurements given up have left."""
+    sweep(CACHE, "*")
+    entry = re.compile(rf"{re.escape(name)}-[0-9a-f]{{16}}(\.pickle)?")
+    entries = [path for path in CACHE.iterdir() if entry.fullmatch(path.name)]
+    with suppress(FileNotFoundError):  # another run may be doing the same
+        tables = [path for path in entries if path.suffix == ".pickle"]
+        for path in sorted(tables, key=lambda path: path.stat().st_mtime)[:-KEPT]:
+            path.unlink()
+        for path in entries:
+            if path.is_dir():
+                remove_abandoned(path)
 
 
 def _key(name: str) -> str:

@@ -14,7 +14,7 @@ from bcre_studies.catalog import STUDIES, study
 from bcre_studies.claim import Claim, Verdict
 from bcre_studies.ledger import ENTRIES, Entry
 from bcre_studies.report import style
-from bcre_studies.report.files import REPORTS, replace_file, replace_text
+from bcre_studies.report.files import REPORTS, replace_file, replace_text, require_writable
 from bcre_studies.report.store import Tables, tables_of
 
 VERDICTS = REPORTS / "verdicts.csv"
@@ -90,11 +90,18 @@ def write_index(findings: Sequence[Finding]) -> None:
 
 def write_all() -> list[Finding]:
     """``bcre report``: every study and the index."""
+    findings = write_studies(STUDIES)
+    write_index(findings)
+    return findings
+
+
+def write_studies(names: Sequence[str]) -> list[Finding]:
+    """``bcre study``: these studies, each written as soon as it is measured."""
+    require_writable("reports", REPORTS)
     findings = []
-    for name in STUDIES:
+    for name in names:
         findings.append(find(name))
         write_study(findings[-1])
-    write_index(findings)
     return findings
 
 
