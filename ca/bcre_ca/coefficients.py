@@ -17,7 +17,8 @@ class Parameters(NamedTuple):
     """A :class:`bcre_ca.Rule` without its dt, as compiled code takes it.
 
     ``slope`` is the one at which the exchange vanishes. ``kappa``, ``v_up`` and ``dry`` are None
-    where the rule does without; ``calibrated`` and ``limited`` are None or True.
+    where the rule does without; ``calibrated``, ``limited`` and ``downhill``, for cells updated in
+    place one after the other downhill, are None or True.
     """
 
     v: float
@@ -30,6 +31,7 @@ class Parameters(NamedTuple):
     dry: float | None
     calibrated: bool | None
     limited: bool | None
+    downhill: bool | None = None
 
 
 class Coefficients(NamedTuple):
@@ -110,6 +112,7 @@ def largest_step(p: Parameters, largest_R: float, sink: float) -> float:
         sink,
         p.calibrated,
         p.limited,
+        p.downhill,
     )
     return largest
 
@@ -137,6 +140,7 @@ def _largest_step(
     sink: float,
     calibrated: bool | None,
     limited: bool | None,
+    downhill: bool | None,
 ) -> float:
     of_layer: float = _inverse(drift + 2 * spread + sink)
     of_wave: float = _inverse(climb + 2 * bending)
@@ -145,6 +149,8 @@ def _largest_step(
     if calibrated is not None:
         of_layer = min(_inverse(drift + sink), _step_of_quadratic(drift, 2 * spread + sink))
         of_wave = _step_of_quadratic(climb, 2 * bending)
+    if downhill is not None:
+        of_wave = _inverse(climb + drift + spread)
     return min(of_layer, of_wave)
 
 

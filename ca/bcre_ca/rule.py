@@ -25,6 +25,12 @@ LAYER_BOUND: dict[str, str] = {
     "limited": "2 (v dt/d + 2 D dt/d^2 + gamma dt max(Sc - S, 0)) must not exceed 1",
 }
 
+WAVE_BOUND: dict[str, str] = {
+    "synchronous": "gamma R dt/d",
+    "left": "gamma R dt/d",
+    "right": "gamma R dt/d + v dt/d + D dt/d^2",
+}
+
 
 class UnstableStep(ValueError):  # noqa: N818 - named for what happened, as StopIteration is
     """A time step that cannot be stable; ``largest`` is the largest one that would be."""
@@ -129,6 +135,7 @@ class Rule:
             dry=float(self.dry) if self.dry > 0 else None,
             calibrated=True if self.scheme == "calibrated" else None,
             limited=True if self.scheme == "limited" else None,
+            downhill=True if self.order == "right" else None,
         )
 
     def coefficients(self) -> Coefficients:
@@ -150,7 +157,9 @@ class Rule:
 
         Of the upwind rule: v dt/d + 2 D dt/d^2 + sink dt <= 1, (gamma/d + 2 kappa/d^2) X dt <= 1,
         where sink = max(kappa h_xx - gamma (S - Sc), 0) and X(R) is the layer that exchanges; of
-        the others see :func:`bcre_ca.theory.max_stable_step`.
+        the others see :func:`bcre_ca.theory.max_stable_step`. A sweep downhill adds to a cell what
+        leaves the one above before it looks at it, so that up to R/(1 - v dt/d - D dt/d^2)
+        exchange there: its second bound is (gamma R/d + v/d + D/d^2) dt <= 1.
 
         Parameters
         ----------
@@ -172,10 +181,11 @@ class Rule:
         ``largest_R`` is the layer that it was found for: it tells which of the bounds was passed.
         """
         if not self.dt <= largest * (1 + ROUNDING):
-            of_wave = largest_step(self.parameters()._replace(v=0.0, D=0.0), largest_R, 0.0)
+            with_wave, without = (largest_step(self.parameters(), R, 0.0) for R in (largest_R, 0.0))
+            by_wave = with_wave <= largest * (1 + ROUNDING) < without
             bound = (
-                f"gamma R dt/d must not exceed 1 where R = {largest_R:.6g}"
-                if of_wave <= largest * (1 + ROUNDING)
+                f"{WAVE_BOUND[self.order]} must not exceed 1 where R = {largest_R:.6g}"
+                if by_wave
                 else LAYER_BOUND[self.scheme]
             )
             raise UnstableStep(self.dt, largest, bound)

@@ -1,8 +1,10 @@
 import math
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from bcre_ca import Rule, UnstableStep
+from bcre_ca import Pile, Rule, UnstableStep, advance
 
 FIGURE_2 = {"v": 2.5, "D": 0.1, "gamma": 0.01, "Sc": 0.5}
 
@@ -105,3 +107,25 @@ def test_closed_forms_of_the_synchronous_rule_are_not_offered_for_in_place_order
 ):
     with pytest.raises(ValueError, match=f"order = '{order}'"):
         getattr(rule(order=order), closed_form)()
+
+
+def test_sweep_downhill_counts_what_a_cell_receives_before_it_exchanges():
+    """Without diffusion the layer found is R/(1 - v dt/d): gamma R dt/d + v dt/d <= 1."""
+    downhill = rule(v=0.4, D=0.0, gamma=0.1, dt=1.0, order="right")
+    assert downhill.max_stable_step(6.0) == pytest.approx(1.0)
+    assert downhill.max_stable_step(5.0) > 1 > downhill.max_stable_step(7.0)
+    with pytest.raises(UnstableStep, match=r"gamma R dt/d \+ v dt/d \+ D dt/d\^2 must not exceed"):
+        downhill.require_stable(7.0)
+    with pytest.raises(UnstableStep, match=r"v dt/d \+ 2 D dt/d\^2 \+ gamma dt max"):
+        replace(downhill, dt=3.0).require_stable(0.0)
+
+
+@pytest.mark.parametrize("part", [0.97, 1.03])
+def test_waves_under_a_sweep_downhill_grow_from_that_bound_on(part):
+    """At 1.03 of it gamma R dt/d is still 0.62, which the other orders would bear."""
+    downhill = rule(v=0.4, D=0.0, gamma=0.1, Sc=0.0, d=1.0, dt=part, order="right")
+    R = np.full(64, 6.0)
+    R[0] += 6.0 * 0.4 * part / (1 - 0.4 * part)
+    start = 1e-9 * np.resize([1.0, -1.0], 64)
+    pile = advance(Pile(start, R), downhill, 400, "periodic")
+    assert (np.abs(pile.h).max() > 10 * np.abs(start).max()) == (part > 1)
