@@ -60,16 +60,14 @@ def step(h: Array, R: Array, K: Coefficients, fall: float | None) -> tuple[Array
 def drops(h: Array, s: float, fall: float | None) -> tuple[Array, Array]:
     """Drop beyond repose from the cell above into each cell, and from it into the one below.
 
-    With open ends the surface goes on evenly above the first cell, and at repose around the last.
+    With open ends the surface goes on evenly above the first cell, and at repose beyond the last.
     """
     next_below = h[0] - fall if fall is not None else h[-1] - s
     below = (h - np.append(h[1:], next_below)) - s
     if fall is not None:
         return np.append(below[-1], below[:-1]), below
     below[-1] = 0.0
-    above = np.append(below[0], below[:-1])
-    above[-1] = 0.0
-    return above, below
+    return np.append(below[0], below[:-1]), below
 
 
 def _differences(R: Array, *, periodic: bool) -> tuple[Array, Array]:

@@ -12,7 +12,7 @@ from the old state; the in-place rules visit the cells one after the other and r
 
 Ends: ``"open"`` has a closed top (no flux into cell 0) and an open foot, where R leaves by
 advection and the surface goes on at the repose slope, so that nothing is exchanged in the last
-cell. ``"periodic"`` joins the ends in R and in the height above the repose line, u = h + Sc x.
+cell but by curvature. ``"periodic"`` joins the ends in R and in the height above the repose line, u = h + Sc x.
 
 A calibrated rule, a curvature term and a saturated exchange change what is eroded
 (:mod:`bcre_ca.exchange`) and the coefficients (:mod:`bcre_ca.coefficients`), not the step; the
@@ -68,7 +68,9 @@ def _synchronous(h: Array, R: Array, rule: Rule, ends: Ends) -> tuple[Array, Arr
         flux_in = np.append(0.0, flux_out[:-1])
         drop = (h[:-1] - h[1:]) - s
         bend = np.append(0.0, drop[:-1] - drop[1:])[: drop.size]
-        exchange = np.append(eroded(R[:-1], drop, bend, k, a, m, u), 0.0)
+        above = drop[-1] if drop.size else 0.0
+        at_foot = eroded(R[-1], 0.0, above, k, a, m, None)
+        exchange = np.append(eroded(R[:-1], drop, bend, k, a, m, u), at_foot)
         outflow = float(flux_out[-1])
     h, R = settle(h - exchange, R + ((flux_in - flux_out) + exchange), dry)
     return h, R, outflow

@@ -19,20 +19,21 @@ def open_ends(h, R, K, steps, account):  # type: ignore[no-untyped-def]
     scratch = np.empty((4, h.size), h.dtype)
     h_mid, R_mid, R_face, g = scratch[0], scratch[1], scratch[2], scratch[3]
     for _ in range(steps):
-        top, across_foot = 0.0, 0.0
+        above, rise = 0.0, 0.0
         if last > 0:
-            top = (h[0] - h[1]) - K.s
-            across_foot = R[last] - R[last - 1]
-            _predict(h, R, last, K, top, 0.0, scratch)
+            above = (h[last - 1] - h[last]) - K.s
+            rise = R[last] - R[last - 1]
+            _predict(h, R, last, K, (h[0] - h[1]) - K.s, 0.0, scratch)
         h_mid[last], R_mid[last], R_face[last], g[last] = predicted(
-            h[last], R[last], 0.0, 0.0, across_foot, 0.0, K
+            h[last], R[last], above, 0.0, rise, 0.0, K
         )
         foot = K.c * R_face[last]
         into_last = 0.0
         if last > 0:
+            above = (h_mid[last - 1] - h_mid[last]) - K.s
             into_last = K.c * R_face[last - 1] - K.b * (R_mid[last] - R_mid[last - 1])
             _correct(h, R, last, K, 0.0, (h_mid[0] - h_mid[1]) - K.s, scratch)
-        h[last], R[last] = corrected(h[last], R[last], R_mid[last], into_last, foot, 0.0, 0.0, K)
+        h[last], R[last] = corrected(h[last], R[last], R_mid[last], into_last, foot, 0.0, above, K)
         add(account, foot)
 
 

@@ -53,6 +53,15 @@ def _sweep(h, R, cells, K, flux_in, before):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(error_model="numpy")
+def _leave(h, R, last, K, flux_in, above, account):  # type: ignore[no-untyped-def]
+    """One step of the cell at the open foot, into which the surface drops by ``above``."""
+    foot = K.c * R[last]
+    exchange = eroded(R[last], 0.0, above, K.k, K.a, K.m, None)
+    h[last], R[last] = settle(h[last] - exchange, R[last] + ((flux_in - foot) + exchange), K.dry)
+    add(account, foot)
+
+
+@numba.njit(error_model="numpy")
 def open_ends(h, R, K, steps, account):  # type: ignore[no-untyped-def]
     """``steps`` steps with a closed top and an open foot."""
     last = h.size - 1
@@ -60,13 +69,12 @@ def open_ends(h, R, K, steps, account):  # type: ignore[no-untyped-def]
         _tiled(h, R, K, steps, account)
         return
     for _ in range(steps):
-        foot = K.c * R[last]
-        into_last = 0.0
+        into_last, above = 0.0, 0.0
         if last > 0:
             into_last = K.q * R[last - 1] - K.b * R[last]
+            above = (h[last - 1] - h[last]) - K.s
             _sweep(h, R, last, K, K.c - K.c, (h[0] - h[1]) - K.s)
-        h[last], R[last] = settle(h[last], R[last] + (into_last - foot), K.dry)
-        add(account, foot)
+        _leave(h, R, last, K, into_last, above, account)
 
 
 @numba.njit(error_model="numpy")
@@ -96,9 +104,7 @@ def _tiled(h, R, K, steps, account):  # type: ignore[no-untyped-def]
                     carried_flux[t] = flux_out
                     carried_drop[t] = drop
                 if upper <= last < (tile + 1) * TILE - t:
-                    foot = K.c * R[last]
-                    h[last], R[last] = settle(h[last], R[last] + (carried_flux[t] - foot), K.dry)
-                    add(account, foot)
+                    _leave(h, R, last, K, carried_flux[t], carried_drop[t], account)
 
 
 @numba.njit(error_model="numpy")
