@@ -75,13 +75,16 @@ def require_runnable(scene: Scene, model: Which, frames: int) -> None:
     with _failures_told_by_key(scene):
         needed = memory.estimate(scene, model, frames, _finest(scene))
         memory.require(f"{_grids(scene)} with --frames = {frames}", needed)
-        _, R = scene.initial(scene.centres())  # tells an overflow from an unstable step
+        R = _largest_layer(scene)  # tells an overflow from an unstable step
         if model in ("ca", "both"):
-            _refuse_endless(scene, "ca", scene.time.until / rule_of(scene).dt)
+            steps = scene.time.until / rule_of(scene).dt
+            if scene.time.step == "auto":
+                steps = max(steps, scene.time.until * scene.material.gamma * R / scene.d)
+            _refuse_endless(scene, "ca", steps)
         if model in ("pde", "both"):
             grid = scene.solver.cells or COARSEST
             bound = bcre_pde.largest_explicit_step(
-                problem_of(scene).material, scene.domain.length / grid, float(R.max())
+                problem_of(scene).material, scene.domain.length / grid, R
             )
             _refuse_endless(scene, "pde", scene.time.until / bound)
 
@@ -118,6 +121,18 @@ def _run_ca(scene: Scene, times: Sequence[float]) -> Run:
     except (bcre_ca.UnstableStep, FloatingPointError) as failure:
         step = scene.time.step
         raise SceneError(f"time.step = {step!r}: {failure}, or be 'auto'") from None
+
+
+def _largest_layer(scene: Scene) -> float:
+    """What R may come to: R0 e^(gamma (S - Sc) t), but no more than what lies above repose."""
+    x = scene.centres()
+    h, R = scene.initial(x)
+    u, thickest = h + scene.material.Sc * x, float(R.max())
+    if x.size < 2:
+        return thickest
+    excess = max(float(-np.diff(u).min() / scene.d), 0.0)
+    growth = min(scene.material.gamma * excess * scene.time.until, 700.0)
+    return min(thickest * math.exp(growth), thickest + float(np.ptp(u)))
 
 
 def _grids(scene: Scene) -> str:

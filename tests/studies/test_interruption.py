@@ -1,0 +1,280 @@
+"""Runs that are killed, disturbed or without space: whole files, kept cases, no worker left."""
+
+import errno
+import fcntl
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from bcre_studies import cli, work
+from bcre_studies.report import files, pickles, store
+from bcre_studies.report.files import replace_bytes, replace_file, require_writable, workshop
+
+
+def measure(case):
+    """A case that writes down that it was measured."""
+    folder, number = case
+    with (folder / "measured").open("a") as told:
+        told.write(f"{number}\n")
+    if number == 3 and not (folder / "go on").exists():
+        raise OSError("interrupted")
+    return number * 0.1, {"number": number}
+
+
+def measured(folder):
+    return sorted(int(line) for line in (folder / "measured").read_text().split())
+
+
+@pytest.fixture
+def one_worker(monkeypatch):
+    monkeypatch.setenv("LOKY_MAX_CPU_COUNT", "1")
+
+
+# Files
+
+
+def test_file_is_on_the_disk_before_it_bears_its_name(tmp_path, monkeypatch):
+    path, order = tmp_path / "a.txt", []
+    replace = Path.replace
+    monkeypatch.setattr(os, "fsync", lambda handle: order.append(os.fstat(handle).st_size))
+    monkeypatch.setattr(Path, "replace", lambda *names: order.append("named") or replace(*names))
+    replace_bytes(path, b"four")
+    assert order == [4, "named"]
+
+
+def test_leftover_of_a_killed_writer_goes_and_that_of_a_living_one_stays(tmp_path):
+    dead, living, other = (tmp_path / name for name in (".a.1.part", ".a.2.part", ".b.1.part"))
+    for path in (dead, living, other):
+        path.write_bytes(b"half")
+    with living.open("rb") as held:
+        fcntl.flock(held, fcntl.LOCK_EX)
+        replace_bytes(tmp_path / "a", b"whole")
+    assert {path.name for path in tmp_path.iterdir()} == {"a", ".a.2.part", ".b.1.part"}
+
+
+def test_temporary_file_is_safe_from_another_run_while_it_is_written(tmp_path):
+    def write(temporary):
+        temporary.write_bytes(b"new")
+        files.sweep(tmp_path, "*")
+        assert temporary.exists()
+
+    replace_file(tmp_path / "a", write)
+    assert (tmp_path / "a").read_bytes() == b"new"
+
+
+def test_temporary_file_that_is_swept_before_it_is_locked_is_made_again(tmp_path, monkeypatch):
+    made, mkstemp = [], tempfile.mkstemp
+
+    def swept_at_first(*arguments):
+        made.append(mkstemp(*arguments))
+        if len(made) == 1:
+            Path(made[0][1]).unlink()
+        return made[-1]
+
+    monkeypatch.setattr(tempfile, "mkstemp", swept_at_first)
+    replace_bytes(tmp_path / "a", b"new")
+    assert len(made) == 2
+    assert (tmp_path / "a").read_bytes() == b"new"
+
+
+def test_full_disk_leaves_the_old_file_and_ends_in_one_line_with_its_name(
+    tmp_path, monkeypatch, capsys
+):
+    path = tmp_path / "a.csv"
+    replace_bytes(path, b"old")
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    monkeypatch.setattr(cli, "app", lambda **_: replace_bytes(path, b"new"))
+    with pytest.raises(SystemExit) as ended:
+        cli.main()
+    assert ended.value.code == 2
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1
+    assert "a.csv: cannot be written: No space left on device" in told
+    assert path.read_bytes() == b"old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_folder_that_is_a_file_is_refused_by_its_key(tmp_path):
+    (tmp_path / "reports").write_text("mine")
+    with pytest.raises(ValueError, match=r"reports = .*must be a folder that can be written"):
+        require_writable("reports", tmp_path / "reports")
+
+
+# Finished cases
+
+
+def test_finished_cases_outlive_a_failure_and_are_not_measured_again(tmp_path, one_worker):
+    cases = [(tmp_path, number) for number in range(5)]
+    with work.kept(tmp_path / "cases"):
+        with pytest.raises(OSError, match="interrupted"):
+            work.each(measure, cases, "test")
+        assert measured(tmp_path) == [0, 1, 2, 3]
+        (tmp_path / "go on").touch()
+        results = work.each(measure, cases, "test")
+    assert results == [measure(case) for case in cases]
+    assert measured(tmp_path)[:7] == [0, 0, 1, 1, 2, 2, 3]
+    assert measured(tmp_path).count(4) == 2  # once in the run, once in this test
+
+
+def test_damaged_finished_case_is_measured_again(tmp_path, one_worker):
+    (tmp_path / "go on").touch()
+    cases = [(tmp_path, number) for number in range(3)]
+    with work.kept(tmp_path / "cases"):
+        first = work.each(measure, cases, "test")
+        hurt = sorted((tmp_path / "cases").iterdir())[1]
+        hurt.write_bytes(hurt.read_bytes()[:-1])
+        assert work.each(measure, cases, "test") == first
+    assert len(measured(tmp_path)) == 4
+
+
+def test_nothing_is_kept_outside_a_study(tmp_path, one_worker):
+    (tmp_path / "go on").touch()
+    for _ in range(2):
+        work.each(measure, [(tmp_path, 1)], "test")
+    assert measured(tmp_path) == [1, 1]
+    assert {path.name for path in tmp_path.iterdir()} == {"go on", "measured"}
+
+
+@pytest.mark.parametrize("workers", ["1", "2"])
+def test_results_do_not_depend_on_the_number_of_workers(monkeypatch, workers):
+    monkeypatch.setenv("LOKY_MAX_CPU_COUNT", workers)
+    assert work.each(divmod_7, range(20), "test") == [divmod(n, 7) for n in range(20)]
+
+
+def divmod_7(number):
+    return divmod(number, 7)
+
+
+def test_label_with_markup_is_text_in_the_progress_bar(capsys, one_worker):
+    work.each(divmod_7, range(3), "[bold]x[/bold] [/]")
+    assert "[bold]x[/bold] [/]" in capsys.readouterr().out
+
+
+# Two runs at once
+
+
+def test_second_holder_of_a_workshop_waits_for_the_first_and_says_so(tmp_path, capsys):
+    folder, order, held = tmp_path / "w", [], threading.Event()
+
+    def first():
+        with workshop(folder, "waits"):
+            held.set()
+            while not order:
+                time.sleep(0.01)
+            time.sleep(0.1)
+            order.append("first done")
+
+    thread = threading.Thread(target=first)
+    thread.start()
+    held.wait()
+    order.append("second comes")
+    with workshop(folder, "waits"):
+        order.append("second in")
+        assert folder.is_dir()
+    thread.join()
+    assert order == ["second comes", "first done", "second in"]
+    assert capsys.readouterr().err == "waits\n"
+    assert not folder.exists()
+
+
+def test_workshop_left_by_an_exception_keeps_its_content_and_is_taken_over(tmp_path):
+    folder = tmp_path / "w"
+    with pytest.raises(KeyboardInterrupt), workshop(folder, ""):  # noqa: PT012
+        (folder / "case").touch()
+        raise KeyboardInterrupt
+    assert [path.name for path in folder.iterdir()] == ["case"]
+    files.remove_abandoned(folder)
+    assert not folder.exists()
+
+
+def test_workshop_that_is_held_is_not_removed(tmp_path):
+    with workshop(tmp_path / "w", ""):
+        files.remove_abandoned(tmp_path / "w")
+        assert (tmp_path / "w").is_dir()
+
+
+# The store
+
+
+def test_store_keeps_the_latest_states_of_a_study_and_forgets_the_others(tmp_path, monkeypatch):
+    monkeypatch.setattr(store, "CACHE", tmp_path)
+    tables = {"comparison": pd.DataFrame({"a": [1.0]})}
+    names = [f"fake-{number:016x}.pickle" for number in range(6)]
+    for age, name in enumerate(reversed(names)):
+        pickles.dump(tmp_path / name, tables)
+        os.utime(tmp_path / name, (1e9 - age, 1e9 - age))
+    pickles.dump(tmp_path / f"fake_too-{0:016x}.pickle", tables)
+    (tmp_path / f"fake-{7:016x}").mkdir()
+    (tmp_path / f".fake-{8:016x}.pickle.x.part").touch()
+    assert store._load(tmp_path / names[0]) is not None  # of use now, though the oldest
+    store._forget_old("fake")
+    kept = {path.name for path in tmp_path.iterdir()}
+    assert kept == {names[0], names[5], names[4], f"fake_too-{0:016x}.pickle"}
+
+
+# Signals
+
+SLEEPERS = """
+import os, sys, time
+from pathlib import Path
+from bcre_studies import cli, work
+
+def sleep(case):
+    Path(f"started-{os.getpid()}").touch()
+    time.sleep(60)
+
+cli.app = lambda **_: work.each(sleep, range(4), "sleepers")
+cli.main()
+"""
+
+
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_no_worker_outlives_its_run_even_if_the_run_alone_is_killed(tmp_path, sent):
+    environment = os.environ | {"LOKY_MAX_CPU_COUNT": "2"}
+    run = subprocess.Popen(
+        [sys.executable, "-c", SLEEPERS],
+        cwd=tmp_path,
+        env=environment,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    while not (started := list(tmp_path.glob("started-*"))) and run.poll() is None:
+        time.sleep(0.05)
+    run.send_signal(sent)
+    code = run.wait()
+    workers = [int(path.name.partition("-")[2]) for path in started]
+    assert workers
+    assert run.pid not in workers or os.cpu_count() == 1
+    until = time.monotonic() + 30
+    while any(map(is_alive, workers)) and time.monotonic() < until:
+        time.sleep(0.1)
+    assert not any(map(is_alive, workers))
+    told = run.communicate()[1]
+    if sent != signal.SIGKILL:
+        assert code == 130
+        assert "bcre: interrupted; every file written before is whole" in told
+        assert "Traceback" not in told
+
+
+def is_alive(pid):
+    stat = Path(f"/proc/{pid}/stat")
+    if Path("/proc").is_dir():
+        return stat.exists() and stat.read_text().rpartition(")")[2].split()[0] != "Z"
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    return True
