@@ -62,12 +62,20 @@ class Contender:
     prepare: takes a scene and cells, returns the function that solves it.
     coarsest: fewest cells.
     most: cell-steps beyond which no finer grid is tried.
+    finer: factor from grid to grid.
+    only: the scenes in which it enters; all of them if left out.
     """
 
     name: str
     prepare: Callable[[Scene, int], Solve]
     coarsest: int
     most: float
+    finer: int = 2
+    only: tuple[str, ...] = ()
+
+    def enters(self, label: str) -> bool:
+        """Whether it competes on the scene of that label."""
+        return not self.only or label in self.only
 
 
 METHODS: tuple[Method, ...] = ("runge-kutta", "RK45", "DOP853", "LSODA", "BDF")
@@ -88,10 +96,11 @@ def own() -> tuple[Contender, ...]:
 
 def rivals() -> tuple[Contender, ...]:
     """What a user would pick instead; FiPy only where it is installed."""
+    compiling: dict[str, Any] = {"finer": 4, "only": ("figure 2", WAVE)}  # for minutes
     found = (
         Contender("NumPy automaton", _numpy, 50, 6e6),
-        Contender("py-pde expressions, central", _pypde_central, 50, 1e7),
-        Contender("py-pde expressions, upwind Euler", _pypde_upwind, 50, 1e7),
+        Contender("py-pde expressions, central", _pypde_central, 100, 1e7, **compiling),
+        Contender("py-pde expressions, upwind Euler", _pypde_upwind, 100, 1e7, **compiling),
         Contender("SciPy LSODA, banded", _lines, 50, 4e5),
     )
     fipy = (Contender("FiPy", _fipy, 50, 3e4),)
@@ -246,17 +255,19 @@ def _front(x: Array, R: Array) -> float:
     return -edge(-x[::-1], R[::-1], level)
 
 
-def rungs(contender: Contender, scene: Scene) -> Iterator[tuple[int, Solve, EndState]]:
-    """Grids of doubling fineness with what the contender made of them."""
-    cells = contender.coarsest
+def rungs(
+    contender: Contender, scene: Scene, most: float | None = None
+) -> Iterator[tuple[int, Solve, EndState]]:
+    """Ever finer grids with what the contender made of them, up to ``most`` cell-steps."""
+    cells, most = contender.coarsest, min(contender.most, most or contender.most)
     while True:
         solve = contender.prepare(scene, cells)
         end = solve()
         yield cells, solve, end
-        # Twice the cells take twice the steps at least.
-        if 4 * cells * end.evaluations > contender.most:
+        # A step is at most as long as a cell: finer grids take as many more steps at least.
+        if contender.finer**2 * cells * end.evaluations > most:
             return
-        cells *= 2
+        cells *= contender.finer
 
 
 def row_of(label: str, contender: Contender, cells: int, end: EndState) -> dict[str, Any]:
