@@ -275,15 +275,25 @@ def _validated(data: dict[str, Any], folder: Path) -> Scene:
         raise SceneError(_first_of(failure)) from None
     scene._folder = folder
     try:
-        for index, surface in enumerate(scene.surface):
-            if isinstance(surface, TableSurface):
-                surface.load(f"surface.{index}", folder, scene, scene._untilted())
-        for index, rolling in enumerate(scene.rolling):
-            if isinstance(rolling, TableRolling):
-                rolling.load(f"rolling.{index}", folder, scene)
+        with np.errstate(over="raise", divide="raise", invalid="raise"):
+            _load_tables(scene)
     except (ProfileError, NotEnoughMemoryError) as failure:
         raise SceneError(str(failure)) from None
+    except FloatingPointError as failure:
+        raise SceneError(
+            f"material.Sc = {scene.material.Sc!r}: must be nearer to 1, the tables of this scene "
+            f"cannot be tilted by it and the inclines ({failure})"
+        ) from None
     return scene
+
+
+def _load_tables(scene: Scene) -> None:
+    for index, surface in enumerate(scene.surface):
+        if isinstance(surface, TableSurface):
+            surface.load(f"surface.{index}", scene._folder, scene, scene._untilted())
+    for index, rolling in enumerate(scene.rolling):
+        if isinstance(rolling, TableRolling):
+            rolling.load(f"rolling.{index}", scene._folder, scene)
 
 
 def _refuse_long_integers(data: dict[str, Any]) -> None:
