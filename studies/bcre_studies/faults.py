@@ -13,6 +13,7 @@ import sys
 import tempfile
 import warnings
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -113,7 +114,7 @@ def _what_comes_of(path: Path, run: bool) -> str:
     return "ran" if finite else "crashed"
 
 
-DAMAGES = {
+DAMAGES: dict[str, Callable[[bytes], bytes]] = {
     "empty": lambda content: b"",
     "cut in half": lambda content: content[: len(content) // 2],
     "one bit turned": lambda content: content[:-1] + bytes([content[-1] ^ 1]),

@@ -104,7 +104,7 @@ def _left_in(folder: Path) -> Iterator[int]:
             limit, used = ((folder / name).read_text(encoding="ascii") for name in (most, now))
             # File pages that nobody uses count as used but are given back.
             cached = dict(map(str.split, (folder / "memory.stat").read_text().splitlines()))
-            idle = cached.get("total_inactive_file") or cached.get("inactive_file", 0)
+            idle = cached.get("total_inactive_file") or cached.get("inactive_file", "0")
             yield int(limit) - int(used) + int(idle)
         except (OSError, ValueError):  # no such group or version, or "max"
             continue

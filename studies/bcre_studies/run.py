@@ -80,6 +80,8 @@ def require_runnable(scene: Scene, model: Which, frames: int) -> None:
             steps = scene.time.until / rule_of(scene).dt
             if scene.time.step == "auto":
                 steps = max(steps, scene.time.until * scene.material.gamma * R / scene.d)
+            else:
+                _run_ca(scene, [0.0])  # refuses a step that cannot be stable
             _refuse_endless(scene, "ca", steps)
         if model in ("pde", "both"):
             grid = scene.solver.cells or COARSEST
