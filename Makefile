@@ -3,7 +3,7 @@ SHELL := /bin/sh
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: help install reports test bench check lint clean
+.PHONY: help install reports speed test bench check lint clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-9s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -17,7 +17,12 @@ install: .venv/installed ## create .venv with the locked dependencies
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
 	@touch $@
 
-reports: install ## run all studies, write reports/
+reports: install ## run all studies, write reports/; time them here, into reports/local/
+	$(BIN)/bcre report
+	$(BIN)/bcre speed
+
+speed: install ## renew the committed record of speed (some minutes, on a quiet machine)
+	$(BIN)/bcre speed --record
 	$(BIN)/bcre report
 
 test: install ## run the tests

@@ -77,6 +77,43 @@ def run(
     click.echo(f"wrote {folder / 'profiles.csv'} and {folder / 'summary.json'}")
 
 
+@app.command()
+@click.argument("scene")
+@click.option("--tolerance", type=float, default=0.05, show_default=True, help="Relative error.")
+@click.option(
+    "--observable",
+    default="R",
+    show_default=True,
+    help="R, h, slope, roughness, front, eroded, reach or top.",
+)
+@click.option("--budget", metavar="TIME", help="Time per frame, e.g. 16ms: as accurate as it lets.")
+@click.option("--frames", type=click.IntRange(2, 10_000), default=11, show_default=True)
+@click.option("--set", "assignments", multiple=True, metavar="KEY=VALUE", help="As for bcre run.")
+@click.option(
+    "--out",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Scene to be run  [default: out/SCENE-advice.toml]",
+)
+def advise(
+    scene: str,
+    tolerance: float,
+    observable: str,
+    budget: str | None,
+    frames: int,
+    assignments: tuple[str, ...],
+    out: Path | None,
+) -> None:
+    """Which model and cells answer SCENE to a tolerance at the least cost; by short pilots."""
+    from bcre_studies.advice_text import answer
+    from bcre_studies.advise import Question, seconds_of
+    from bcre_studies.scene import load
+
+    seconds = None if budget is None else seconds_of(budget)
+    question = Question(load(scene, assignments), tolerance, observable, seconds, frames)
+    path = Path("out") / f"{Path(scene).stem}-advice.toml" if out is None else out
+    click.echo(answer(question, Path(scene).stem, path))
+
+
 @app.command("study")
 @click.argument("names", nargs=-1, required=True, metavar="NAME...")
 def run_studies(names: tuple[str, ...]) -> None:
@@ -102,6 +139,23 @@ def report() -> None:
 
     claims = [claim for finding in write_all() for claim in finding.claims]
     click.echo(f"{len(claims)} claims judged; read {REPORTS / 'README.md'}")
+
+
+@app.command()
+@click.option(
+    "--record", is_flag=True, help="Renew the committed record in reports/speed (some minutes)."
+)
+def speed(record: bool) -> None:
+    """Measure speed on this machine into reports/local (a minute)."""
+    from bcre_studies.report.speed_page import write
+    from bcre_studies.speed import fipy_solver
+    from bcre_studies.speed.record import LOCAL, RECORD, measure_local, measure_record
+
+    if record and not fipy_solver.available():
+        click.echo("FiPy is not installed and takes no part (make bench installs it)", err=True)
+    folder = RECORD if record else LOCAL
+    write(folder, measure_record() if record else measure_local())
+    click.echo(f"wrote {folder / 'README.md'}")
 
 
 @app.command()

@@ -23,7 +23,14 @@ from bcre_studies import work
 from bcre_studies.catalog import STUDIES, study
 from bcre_studies.compare import significant
 from bcre_studies.report import pickles
-from bcre_studies.report.files import CACHE, remove_abandoned, require_writable, sweep, workshop
+from bcre_studies.report.files import (
+    CACHE,
+    REPORTS,
+    remove_abandoned,
+    require_writable,
+    sweep,
+    workshop,
+)
 
 Tables = dict[str, pd.DataFrame]
 
@@ -84,6 +91,9 @@ def _key(name: str) -> str:
 
     others = {f"{other}.py" for other in STUDIES if other != name}
     digest = hashlib.sha256(platform.python_version().encode())
+    if getattr(study(name), "READS_RECORD", False):
+        for path in sorted((REPORTS / "speed").glob("*.csv")):
+            digest.update(path.name.encode() + path.read_bytes())
     for library in LIBRARIES:
         digest.update(f"{library} {version(library)}".encode())
     for package in (bcre_ca, bcre_pde, bcre_studies):

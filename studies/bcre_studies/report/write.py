@@ -55,7 +55,7 @@ def write_study(finding: Finding) -> None:
         replace_text(folder / f"{key}.csv", table.to_csv(index=False, lineterminator="\n"))
     figure = study(finding.name).draw(finding.tables)
     replace_file(folder / "figure.svg", lambda path: style.save(figure, path))
-    replace_text(folder / "README.md", _render("study.md.j2", finding=finding))
+    replace_text(folder / "README.md", render("study.md.j2", finding=finding))
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ def write_index(findings: Sequence[Finding]) -> None:
     replace_text(VERDICTS, verdict_table(findings).to_csv(index=False, lineterminator="\n"))
     content = {"findings": findings, "verdicts": list(Verdict), "ledger": settle(findings)}
     for name in ("README.md", "index.html", "claims.md"):
-        replace_text(REPORTS / name, _render(f"{name}.j2", **content))
+        replace_text(REPORTS / name, render(f"{name}.j2", **content))
 
 
 def write_all() -> list[Finding]:
@@ -150,7 +150,8 @@ def _cell(value: object) -> str:
     return "" if value is None else str(value)
 
 
-def _render(template: str, **content: object) -> str:
+def render(template: str, **content: object) -> str:
+    """A page from its template; what is HTML escapes every text put into it."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
         autoescape=jinja2.select_autoescape(["html.j2"]),
