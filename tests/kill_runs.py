@@ -49,6 +49,7 @@ def main() -> int:
     given = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         copy = Copy.make(Path(folder))
+        copy.run(QUICK)
         series = kill_in_turn(copy, QUICK, given.kills, given.seed)
         together = two_at_once(copy)
     table = table_of(series)

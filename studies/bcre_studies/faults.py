@@ -38,7 +38,7 @@ STEPS = 20
 FRAMES = 3
 SEED = 1
 STUDY = ("one_variable",)
-KILLS = 3
+KILLS = 4
 
 # Root may write everywhere; another user may not. The libraries are loaded before.
 _WRITE = """
@@ -66,8 +66,10 @@ def try_all() -> pd.DataFrame:
     rows += [_unwritable(fault) for fault in ("full", "forbidden")]
     with tempfile.TemporaryDirectory() as folder:
         copy = Copy.make(Path(folder))
+        code = copy.run(STUDY, workers=1)
+        with_one = copy.reports()
         rows += _killed(kill_in_turn(copy, STUDY, KILLS, SEED))
-        rows += [_two_at_once(copy), _one_worker(copy)]
+        rows += [_worker_counts(code == 0 and copy.reports() == with_one), _two_at_once(copy)]
     return pd.DataFrame(rows)
 
 
@@ -193,11 +195,7 @@ def _two_at_once(copy: Copy) -> Row:
     )
 
 
-def _one_worker(copy: Copy) -> Row:
-    with_two = copy.reports()
-    copy.forget({})
-    code = copy.run(STUDY, workers=1)
-    good = code == 0 and copy.reports() == with_two
+def _worker_counts(good: bool) -> Row:
     return _row(
         "number of workers",
         "one and two",
