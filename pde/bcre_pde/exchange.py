@@ -9,9 +9,6 @@ above repose.
 
 A term that a material does not have is None. None is a type of its own to the compiler, which then
 leaves the term out of the code instead of multiplying by zero.
-
-The compiled right-hand side is cached next to its own source alone: after a change here, remove
-``__pycache__`` (a test compares the two).
 """
 
 from __future__ import annotations
@@ -19,7 +16,7 @@ from __future__ import annotations
 import numba
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(error_model="numpy")
 def exchanging(R, saturation):  # type: ignore[no-untyped-def]
     """X(R), the part of the layer that exchanges; ``saturation`` is gamma/v_up or None."""
     wet = max(R, 0.0)
@@ -28,7 +25,7 @@ def exchanging(R, saturation):  # type: ignore[no-untyped-def]
     return wet / (1.0 + saturation * wet)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(error_model="numpy")
 def exchange(R, gradient, curvature, gamma, kappa, saturation):  # type: ignore[no-untyped-def]
     """E of one cell.
 

@@ -21,6 +21,9 @@ itself by order 1, as R_x = 0 there). Periodic ends wrap.
 
 from __future__ import annotations
 
+import hashlib
+from pathlib import Path
+
 import numba
 
 from bcre_pde.exchange import exchange, exchanging
@@ -28,24 +31,14 @@ from bcre_pde.exchange import exchange, exchanging
 GHOSTS = 3
 SMALLEST_GRID = 8
 
-_compiled = numba.njit(cache=True, error_model="numpy")
+_compiled = numba.njit(error_model="numpy")
 
 
 @_compiled
-def rate(  # type: ignore[no-untyped-def]
+def _rate(  # type: ignore[no-untyped-def]
     state, out, padded, faces, v, D, gamma, kappa, dx, periodic, saturation
 ):
-    """Write the time derivative of ``state`` into ``out``.
-
-    Parameters
-    ----------
-    state, out: shape (3, N): u; R; and of the third row, used for open ends only, the first cell
-        holds u on the foot and the last one the outflow so far divided by N dx.
-    padded, faces: scratch of shapes (2, N + 6) and (2, N + 1).
-    v, D, gamma, kappa: the material, D or kappa None without that term; dx the cell length.
-    periodic: whether the ends are joined.
-    saturation: gamma/v_up, or None for the linear exchange law.
-    """
+    """:func:`rate`, as it is compiled into its callers."""
     n = state.shape[1]
     _pad(state, padded, n)
     u_face, flux = faces[0], faces[1]
@@ -73,13 +66,13 @@ def _pad(state, padded, n):  # type: ignore[no-untyped-def]
             padded[field, n + 3 + ghost] = state[field, ghost]
 
 
-@numba.njit(cache=True, error_model="numpy", inline="always")
+@numba.njit(error_model="numpy", inline="always")
 def _between(a, b):  # type: ignore[no-untyped-def]
     """The one nearer to zero where signs agree, else zero (minmod)."""
     return max(min(a, b), 0.0) + min(max(a, b), 0.0)
 
 
-@numba.njit(cache=True, error_model="numpy", inline="always")
+@numba.njit(error_model="numpy", inline="always")
 def _face_value(a, b, c, d, e):  # type: ignore[no-untyped-def]
     """Value between c and d from five cells, a farthest upwind (Suresh and Huynh 1997, MP5).
 
@@ -194,3 +187,41 @@ def _curvature_on_foot(u, foot, dx, n):  # type: ignore[no-untyped-def]
 @_compiled
 def _third_order_gradient(u, i):  # type: ignore[no-untyped-def]
     return (6 * u[i + 1] - 3 * u[i] - 2 * u[i - 1] - u[i + 2]) / 6
+
+
+def _digest() -> str:
+    digest = hashlib.sha256()
+    for path in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+def entry(sources: str):  # type: ignore[no-untyped-def]
+    """The compiled right-hand side.
+
+    Its machine code is kept on disk, under a key in which the values that a function closes over
+    count but the files of the functions it calls do not: hence ``sources``, a digest of those.
+    """
+
+    @numba.njit(cache=True, error_model="numpy")
+    def rate(  # type: ignore[no-untyped-def]
+        state, out, padded, faces, v, D, gamma, kappa, dx, periodic, saturation
+    ):
+        """Write the time derivative of ``state`` into ``out``.
+
+        Parameters
+        ----------
+        state, out: shape (3, N): u; R; and of the third row, used for open ends only, the first
+            cell holds u on the foot and the last one the outflow so far divided by N dx.
+        padded, faces: scratch of shapes (2, N + 6) and (2, N + 1).
+        v, D, gamma, kappa: the material, D or kappa None without that term; dx the cell length.
+        periodic: whether the ends are joined.
+        saturation: gamma/v_up, or None for the linear exchange law.
+        """
+        sources  # noqa: B018
+        _rate(state, out, padded, faces, v, D, gamma, kappa, dx, periodic, saturation)
+
+    return rate
+
+
+rate = entry(_digest())
