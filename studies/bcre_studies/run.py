@@ -268,6 +268,7 @@ def summarise(run: Run) -> dict[str, Any]:
         "mass_error": run.mass_error(),
         "R_min": float(run.R.min()),
         "R_max": float(run.R.max()),
+        **(run.adapted or {}),
     }
     if run.model == "pde":
         scale = float(np.mean(np.abs(run.R)))

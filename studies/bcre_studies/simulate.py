@@ -24,7 +24,8 @@ class Run:
     """Layers of one model at the cell centres ``x`` (N,) and times ``t`` (T,): ``h``, ``R`` (T, N).
 
     ``outflow`` (T,) is the area that has left through the foot; ``error`` the PDE's estimate of its
-    own error in R (mean absolute value), where one was made.
+    own error in R (mean absolute value), where one was made; ``adapted`` how often the automaton's
+    step was lowered and raised, and blocks of steps were redone.
     """
 
     model: Model
@@ -37,6 +38,7 @@ class Run:
     steps: int
     wall_s: float
     error: float | None = None
+    adapted: dict[str, int] | None = None
 
     @property
     def d(self) -> float:
@@ -133,6 +135,11 @@ def _record(scene: Scene, piles: list[bcre_ca.Pile], wall_s: float) -> Run:
         outflow=np.array([pile.outflow for pile in piles]),
         steps=piles[-1].steps,
         wall_s=wall_s,
+        adapted={
+            "step_lowered": piles[-1].lowered,
+            "step_raised": piles[-1].raised,
+            "blocks_redone": piles[-1].redone,
+        },
     )
 
 
