@@ -103,7 +103,6 @@ class Copy:
 class Aftermath:
     """What a killed run left: counts of files and processes."""
 
-    ended_before: bool
     half: int
     lost: int
     leftovers: int
@@ -119,8 +118,8 @@ def kill_once(
     whole_group: bool,
     after: float,
     good: tuple[Contents, Contents],
-) -> Aftermath:
-    """Start a run, kill it after so many seconds, and look.
+) -> Aftermath | None:
+    """Start a run, kill it after so many seconds, and look; None where it has ended before.
 
     Parameters
     ----------
@@ -131,15 +130,14 @@ def kill_once(
     process = copy.start(names)
     try:
         process.wait(after)
-        ended_before = True
     except subprocess.TimeoutExpired:
-        ended_before = False
         (os.killpg if whole_group else os.kill)(process.pid, sent)
         process.wait()
+    else:
+        return None
     alive = _alive_after(process.pid, GRACE)
     now, still = copy.reports(), copy.intermediates()
     return Aftermath(
-        ended_before,
         half=sum(content not in {old.get(name) for old in good} for name, content in now.items()),
         lost=len(before.keys() - now.keys()),
         leftovers=copy.leftovers(),
@@ -212,14 +210,15 @@ def kill_in_turn(copy: Copy, names: tuple[str, ...], kills: int, seed: int) -> S
     new = copy.reports()
     old = {name: b"older\n" + content for name, content in new.items()}
     copy.forget(old)
-    rows = []
-    for kill in range(kills):
-        sent, whole_group = SIGNALS[kill % len(SIGNALS)], kill % 2 == 1
-        found = kill_once(
-            copy, names, sent, whole_group, chance.uniform(0.05, 1) * span, (old, new)
-        )
-        rows.append((sent, whole_group, found))
-        if found.ended_before:
+    rows: list[tuple[signal.Signals, bool, Aftermath]] = []
+    while len(rows) < kills:
+        sent, whole_group = SIGNALS[len(rows) % len(SIGNALS)], len(rows) % 2 == 1
+        after = chance.uniform(0.05, 1) * span
+        found = kill_once(copy, names, sent, whole_group, after, (old, new))
+        if found is None:
+            span *= 0.9  # what earlier ones had finished makes it end sooner
             copy.forget(old)
+        else:
+            rows.append((sent, whole_group, found))
     code = copy.run(names)
     return Series(rows, code == 0 and copy.reports() == new, copy.leftovers())

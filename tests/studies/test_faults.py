@@ -42,7 +42,7 @@ def test_disk_that_is_full_and_folder_that_is_closed_leave_the_old_file(fault):
 def test_what_a_killed_run_spoils_is_told(bad):
     counts = dict.fromkeys(("half", "lost", "leftovers", "workers_alive", "damaged", "redone"), 0)
     for number, verdict in ((0, "as expected"), (1, "not")):
-        found = kills.Aftermath(ended_before=False, **counts | {bad: number})
+        found = kills.Aftermath(**counts | {bad: number})
         series = kills.Series([(kills.SIGNALS[0], True, found)], equal=True, leftovers=0)
         assert faults._killed(series)[0]["verdict"] == verdict
     assert faults._killed(kills.Series([], equal=False, leftovers=0))[0]["verdict"] == "not"
