@@ -22,6 +22,7 @@ STUDIES = (
     "printed_rule",
     "one_variable",
     "order_of_accuracy",
+    "scene_needs",
 )
 
 

@@ -41,29 +41,52 @@ CELL_PECLET = (1.0, 0.5, 0.25)
 
 
 def measure_sd_automaton(material: bcre_pde.Material, d: float) -> float:
-    """Sd - Sc of the automaton with cells of length d; v, D, gamma > 0.
+    """Sd - Sc of the automaton with cells of length d; v, D, gamma > 0."""
+    v, D, gamma, Sc = _positive(material)
+    dt = bcre_ca.MARGIN * max_stable_step(v, D, gamma, d)
+    return measure_sd_of(bcre_ca.Rule(v, D, gamma, Sc, d, dt))
+
+
+def calibrated_rule(material: bcre_pde.Material, d: float) -> bcre_ca.Rule:
+    """The calibrated automaton with cells of length d, D_eff = D; v, D, gamma > 0.
+
+    Its step is the usual part of the stable one; where that is too short for D_eff = D, one half
+    way between the calibrating step, at which no diffusion of its own is left, and the stable one.
+    """
+    v, D, gamma, Sc = _positive(material)
+    rule = bcre_ca.Rule(v, D, gamma, Sc, d, dt=1.0, scheme="calibrated")
+    bound, least = rule.max_stable_step(), rule.calibrating_step()
+    usual = bcre_ca.MARGIN * bound
+    return replace(rule, dt=usual if usual > least else (least + bound) / 2)
+
+
+def diffusion_left(rule: bcre_ca.Rule) -> float:
+    """What the rule's step lets R diffuse by itself: D, or what calibrating leaves of it."""
+    return rule.coefficients().b * rule.d**2 / rule.dt
+
+
+def measure_sd_of(rule: bcre_ca.Rule) -> float:
+    """Sd - Sc of an upwind or calibrated rule with diffusion left.
 
     Released in one cell. What sigma_abs leaves out is of order d^2/(16 D' t1 t2) with the weighted
     diffusion D' = sqrt(D (D + v d)): below 1e-4 of gamma (Sd - Sc) at the times taken here.
     """
-    v, D, gamma, Sc = _positive(material)
-    expected = second_critical_excess(v, D, gamma, d)
-    diffusion = math.sqrt(D * (D + v * d))
-    late = max(8 / (gamma * expected), 200 * d**2 / diffusion)
-    dt = bcre_ca.MARGIN * max_stable_step(v, D, gamma, d)
+    D, d, dt = diffusion_left(rule), rule.d, rule.dt
+    expected = second_critical_excess(rule.v, D, rule.gamma, d)
+    diffusion = math.sqrt(D * (D + rule.v * d))
+    late = max(8 / (rule.gamma * expected), 200 * d**2 / diffusion)
     steps = math.ceil(late / 2 / dt)
     reach = math.ceil(REACH * math.sqrt(4 * diffusion * 2 * steps * dt) / d)
-    rule = bcre_ca.Rule(v, D, gamma, Sc, d, dt)
 
     def rate(excess: float) -> float:
-        h = -(Sc + excess) * d * np.arange(2 * reach + 1)
+        h = -(rule.Sc + excess) * d * np.arange(2 * reach + 1)
         R = np.zeros_like(h)
         R[reach] = TRACE
         h, middle = bcre_ca.evolve(h, R, rule, steps)
         _, end = bcre_ca.evolve(h, middle, rule, steps)
         return growth_rate((steps * dt, 2 * steps * dt), (middle[reach], end[reach]))
 
-    return _root(rate, expected, FOLDS / (gamma * expected * late), 1e-7)
+    return _root(rate, expected, FOLDS / (rule.gamma * expected * late), 1e-7)
 
 
 def measure_sd_pde(material: bcre_pde.Material) -> Measured:

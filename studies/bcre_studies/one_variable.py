@@ -49,7 +49,14 @@ Row = dict[str, Any]
 
 @numba.njit(cache=True)
 def settle(h, fall, periodic):  # type: ignore[no-untyped-def]
-    """The height h, shape (N,), once no cell sheds more than :data:`SETTLED` in a step.
+    """The first of :func:`settled`, the height alone."""
+    return settled(h, fall, periodic)[0]
+
+
+@numba.njit(cache=True)
+def settled(h, fall, periodic):  # type: ignore[no-untyped-def]
+    """The height h, shape (N,), once no cell sheds more than :data:`SETTLED`, and after how many
+    steps.
 
     Parameters
     ----------
@@ -60,12 +67,14 @@ def settle(h, fall, periodic):  # type: ignore[no-untyped-def]
     h = h.copy()
     last = h.size - 1
     shed = np.empty(h.size)
+    steps = 0
     while True:
         for i in range(last):
             shed[i] = SHARE * max(h[i] - h[i + 1] - fall, 0.0)
         shed[last] = SHARE * max(h[last] - h[0] + fall * last, 0.0) if periodic else 0.0
         if shed.max() <= SETTLED:
-            return h
+            return h, steps
+        steps += 1
         for i in range(last):
             h[i] += shed[i - 1] - shed[i] if i > 0 or periodic else -shed[i]
         if periodic:

@@ -10,6 +10,8 @@ Pe = v d/D only.
 
 * Sd is measured by growth at a fixed place from R = 1e-150 (``critical_slope``) for five sets of
   parameters; "effective" is BCRE with D_eff = D + v d/2, what the automaton's cells add to D at Sd.
+* That of the calibrated automaton (``Sd - Sc, calibrated``) follows from the D that its step leaves
+  to it, D - (v d/2)(1 - v dt/d) instead of D in the closed form (``Rule.second_critical_slope``).
 * Whether the avalanche runs to the top (``climb``, definitions in ``outcome``): pulses 1e-6, 1 and
   10 near the foot of figure 1's slope; "effective" has D_eff = 0.145, kappa_eff = 0.005.
 * The threshold: the slope from which on a pulse climbs, against its amplitude. Its error is half of
@@ -21,6 +23,7 @@ The column "automaton d/4" is the automaton with cells four times smaller.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -33,8 +36,11 @@ from bcre_studies.claim import Claim, Verdict, verdict_of, within, worst
 from bcre_studies.climb import Bracket, climb, effective_problem, pulse_scene, threshold
 from bcre_studies.compare import to_error
 from bcre_studies.critical_slope import (
+    calibrated_rule,
+    diffusion_left,
     effective_for_growth,
     measure_sd_automaton,
+    measure_sd_of,
     measure_sd_pde,
 )
 from bcre_studies.measured import Measured, numbers, shown
@@ -55,7 +61,8 @@ LAST_DIGIT = 1e-5
 OUTCOME_WHY = "the same word, by the definitions of ``outcome`` and at t = 3000"
 
 SD, OUTCOME, THRESHOLD = "Sd - Sc", "runs to the top?", "threshold S0 - Sc"
-QUANTITIES = (SD, OUTCOME, THRESHOLD)
+SD_CALIBRATED = "Sd - Sc, calibrated"
+QUANTITIES = (SD, OUTCOME, THRESHOLD, SD_CALIBRATED)
 
 PARAMETERS = (
     (0.1, 0.1, 0.01, 1.0),
@@ -65,6 +72,9 @@ PARAMETERS = (
     (2.5, 0.1, 0.01, 1.0),
 )
 """v, D, gamma, d: the paper's figure 1, three others, the paper's figures 2 and 3."""
+
+CALIBRATED = (PARAMETERS[0], PARAMETERS[3], PARAMETERS[4])
+"""Of these the calibrated rule is measured too: Pe = 1, 0.25 and 25."""
 
 EXCESSES = (0.5, 0.8, 1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.2)
 PULSES = (1e-6, 1.0, 10.0)
@@ -79,6 +89,7 @@ def run() -> dict[str, pd.DataFrame]:
     cases += [(threshold_row, (pulse,)) for pulse in THRESHOLD_PULSES]
     cases += [(outcome_row, (excess, pulse)) for excess in EXCESSES for pulse in PULSES]
     cases += [(sd_row, parameters) for parameters in PARAMETERS]
+    cases += [(calibrated_row, parameters) for parameters in CALIBRATED]
     rows = each(_case, cases, "second_critical_angle")
     rows.sort(key=lambda row: QUANTITIES.index(row["quantity"]))
     return {"comparison": pd.DataFrame(rows)}
@@ -104,6 +115,25 @@ def sd_row(v: float, D: float, gamma: float, d: float) -> dict[str, Any]:
             TOLERANCE,
         ),
         "automaton_theory": shown(bcre_ca.theory.second_critical_excess(v, D, gamma, d)),
+        "pde_theory": shown(_continuous(material)),
+    }
+
+
+def calibrated_row(v: float, D: float, gamma: float, d: float) -> dict[str, Any]:
+    """Sd - Sc of the calibrated automaton, and of BCRE; "effective" has what Sd sees of D_eff."""
+    material = bcre_pde.Material(v, D, gamma, Sc=0.5)
+    rule = calibrated_rule(material, d)
+    left = replace(material, D=diffusion_left(rule))
+    return {
+        **_head(SD_CALIBRATED, material, d),
+        "automaton d/4": shown(measure_sd_of(calibrated_rule(material, d / 4))),
+        **numbers(
+            measure_sd_of(rule),
+            measure_sd_pde(material),
+            measure_sd_pde(effective_for_growth(left, d)),
+            TOLERANCE,
+        ),
+        "automaton_theory": shown(rule.second_critical_slope() - rule.Sc),
         "pde_theory": shown(_continuous(material)),
     }
 
@@ -181,13 +211,15 @@ def _continuous(material: bcre_pde.Material) -> float:
 def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     """The two closed forms, the two models' Sd, whether the avalanche climbs, and from where on."""
     table = tables["comparison"]
-    sd, outcomes, thresholds = (_of(table, quantity) for quantity in QUANTITIES)
+    sd, outcomes, thresholds, calibrated = (_of(table, quantity) for quantity in QUANTITIES)
     return [
         _closed_form_claim(sd, "automaton", "the automaton", AUTOMATON_TOLERANCE),
         _closed_form_claim(sd, "pde", "BCRE", PDE_TOLERANCE),
         _sd_claim(sd),
         _outcome_claim(outcomes),
         _threshold_claim(thresholds, sd.iloc[0]),
+        _closed_form_claim(calibrated, "automaton", CALIBRATED_AUTOMATON, AUTOMATON_TOLERANCE),
+        _calibrated_claim(calibrated, sd),
     ]
 
 
@@ -195,11 +227,14 @@ def _of(table: pd.DataFrame, quantity: str) -> pd.DataFrame:
     return table[table["quantity"] == quantity]
 
 
+CALIBRATED_AUTOMATON = "the calibrated automaton"
+
+
 def _closed_form_claim(rows: pd.DataFrame, column: str, who: str, tolerance: float) -> Claim:
     pairs = list(zip(rows[column], rows[f"{column}_theory"], strict=True))
     gap = max(abs(measured / theory - 1) for measured, theory in pairs)
     return Claim(
-        f"closed form of Sd, {who.split()[-1]}",
+        f"closed form of Sd, {who.removeprefix('the ')}",
         f"Sd measured in {who} is that of its closed form.",
         worst(within(measured, theory, tolerance) for measured, theory in pairs),
         f"{len(pairs)} sets of parameters, Sd - Sc from {rows[column].min():g} to "
@@ -226,6 +261,24 @@ def _sd_claim(rows: pd.DataFrame) -> Claim:
         f"figure 1's parameters the models disagree between {figure1['automaton']:.4g} and "
         f"{figure1['pde']:.4g}; cells four times smaller raise the automaton's to "
         f"{figure1['automaton d/4']:.4g}",
+        f"{TOLERANCE:.0%} {WHY}",
+    )
+
+
+def _calibrated_claim(rows: pd.DataFrame, upwind: pd.DataFrame) -> Claim:
+    printed = upwind.set_index(["v", "D", "gamma", "d"])["difference"]
+    gaps = ", ".join(
+        f"{row['difference']:.1%} (Pe = {row['v'] * row['d'] / row['D']:g}; the printed rule "
+        f"{printed[row['v'], row['D'], row['gamma'], row['d']]:.0%})"
+        for _, row in rows.iterrows()
+    )
+    return Claim(
+        "second critical slope, calibrated",
+        "The calibrated automaton's second critical slope is that of BCRE.",
+        worst(rows["verdict"]),
+        f"relative difference {gaps}. D_eff = D holds for a layer that is carried; at Sd nothing "
+        "changes in time, so that the part v^2 dt/2 of the diffusion that a calibrated step counts "
+        "upon is not there to be taken away: to first order in Pe Sd is that of D + v^2 dt/2",
         f"{TOLERANCE:.0%} {WHY}",
     )
 
@@ -273,7 +326,7 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
     """Sd against the cell Peclet number, what became of each pulse, and the threshold."""
     table = tables["comparison"]
     figure, axes = style.panels(1, 3)
-    _draw_sd(axes[0], _of(table, SD))
+    _draw_sd(axes[0], _of(table, SD), _of(table, SD_CALIBRATED))
     _draw_outcomes(axes[1], _of(table, OUTCOME))
     _draw_thresholds(axes[2], _of(table, THRESHOLD))
     style.legend(figure, style.MODELS, markers=True)
@@ -283,8 +336,9 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
 COLUMNS = {"ca": "automaton", "pde": "pde", "pde effective": "pde_effective"}
 
 
-def _draw_sd(axis: Axes, rows: pd.DataFrame) -> None:
-    """All over v^2/(4 D gamma): what is left depends on Pe = v d/D only."""
+def _draw_sd(axis: Axes, rows: pd.DataFrame, calibrated: pd.DataFrame) -> None:
+    """All over v^2/(4 D gamma): what is left depends on Pe = v d/D only, but for the calibrated
+    rule, whose step counts too."""
     Pe = np.geomspace(0.1, 40, 200)
     ratio = 4 * (np.sqrt(1 + Pe) - 1) ** 2 / Pe**2
     for model, y in (("ca", ratio), ("pde", np.ones_like(Pe)), ("pde effective", 1 / (1 + Pe / 2))):
@@ -292,6 +346,10 @@ def _draw_sd(axis: Axes, rows: pd.DataFrame) -> None:
     for model, column in COLUMNS.items():
         y = (rows[column] / rows["pde_theory"]).astype(float)
         axis.plot(rows["v"] * rows["d"] / rows["D"], y, **style.marker(model))
+    y = (calibrated["automaton"] / calibrated["pde_theory"]).astype(float)
+    look = style.marker("ca", marker="D", hollow=True)
+    axis.plot(calibrated["v"] * calibrated["d"] / calibrated["D"], y, **look, label="calibrated")
+    axis.legend(loc="lower left")
     axis.set(xscale="log", ylim=(0, 1.1), xlabel="cell Peclet number v d/D")
     axis.set_ylabel("(Sd - Sc) / (v²/4 D gamma)")
     axis.set_title("Sd measured (markers) and closed form", loc="left")

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+import bcre_ca
 from bcre_pde import exact
 from bcre_studies import order_of_accuracy as study
 from bcre_studies.claim import Verdict
@@ -17,7 +18,8 @@ SOLUTIONS = {
     "release": exact.frozen_slope_release(excess=0.9, v=0.8, D=0.4, gamma=0.15),
     "rolling": exact.rolling_mode(wavenumber=0.8, v=0.6, D=0.2, Sc=0.7),
 }
-SCHEMES = [("ca", 0.25), ("ca", 0.5), ("ca", 0.9), ("pde", "runge-kutta"), ("pde", "DOP853")]
+UPWIND = [("ca", ("upwind", share)) for share in (0.25, 0.5, 0.9)]
+SCHEMES = [*UPWIND, ("pde", "runge-kutta"), ("pde", "DOP853")]
 
 
 @pytest.fixture
@@ -25,12 +27,16 @@ def fit(monkeypatch):
     """The study's own fit of order and error, for any solution; without the slowest grids."""
     finer = {"ca": study.GRIDS["ca"], "pde": study.GRIDS["pde"][:-1]}
     coarser = {model: grids[:4] for model, grids in finer.items()}
+    limited = study.LIMITED_GRIDS
 
     def fit(solution, model, scheme):
         monkeypatch.setattr(study, "solutions", lambda: {"this": solution})
-        monkeypatch.setattr(study, "GRIDS", coarser if solution.material.D > 0 else finer)
+        diffuses = solution.material.D > 0
+        monkeypatch.setattr(study, "GRIDS", coarser if diffuses else finer)
+        monkeypatch.setattr(study, "LIMITED_GRIDS", limited[:4] if diffuses else limited)
         rows = pd.DataFrame(study._errors_of(("this", model, scheme)))
-        key = {"solution": "this", "model": model, "scheme": str(scheme)}
+        named = study._named(*scheme) if model == "ca" else scheme
+        key = {"solution": "this", "model": model, "scheme": named}
         return study._fit(key, rows)
 
     return fit
@@ -55,7 +61,7 @@ def test_every_scheme_has_its_formal_order_and_a_small_error(fit, name, model, s
 
 
 @pytest.mark.parametrize("factor", [0.99, 1.01])
-@pytest.mark.parametrize(("model", "scheme"), [("ca", 0.5), ("pde", "runge-kutta")])
+@pytest.mark.parametrize(("model", "scheme"), [("ca", ("upwind", 0.5)), ("pde", "runge-kutta")])
 @pytest.mark.parametrize(
     ("name", "coefficient"),
     [
@@ -72,6 +78,76 @@ def test_coefficient_off_by_one_percent_turns_the_order_or_the_error_red(
 ):
     row = fit(with_wrong(SOLUTIONS[name], coefficient, factor), model, scheme)
     assert row["verdict"] == Verdict.DISAGREE
+
+
+SATURATED = exact.saturated_flow(amplitude=0.2, wavenumber=0.7, v=0.8, v_up=1.1, Sc=0.3)
+CURVED = exact.surface_mode(wavenumber=0.7, gamma=0.6, kappa=0.05, v=0.8)
+
+
+@pytest.mark.parametrize("solution", [SOLUTIONS["rolling"], SOLUTIONS["climbing"], SATURATED])
+def test_limited_scheme_is_of_order_two(fit, solution):
+    row = fit(solution, "ca", ("limited", 0.5))
+    assert (row["formal_order"], row["verdict"]) == (2, Verdict.AGREE)
+    assert row["L1_on_finest"] < 1e-4
+
+
+def test_calibrated_scheme_is_of_order_two_where_nothing_but_R_varies_and_else_of_order_one(fit):
+    linear = fit(SOLUTIONS["rolling"], "ca", ("calibrated", 0.5))
+    wave = fit(SOLUTIONS["climbing"], "ca", ("calibrated", 0.5))
+    assert linear["order_L1"] > 1.8
+    assert 0.9 <= wave["order_L1"] <= 1.1
+    assert {linear["verdict"], wave["verdict"]} == {Verdict.AGREE}
+
+
+@pytest.mark.parametrize("scheme", ["upwind", "calibrated"])
+@pytest.mark.parametrize("solution", [SATURATED, CURVED], ids=["saturated", "curved"])
+def test_automaton_with_a_closure_converges_to_the_exact_solution(fit, solution, scheme):
+    row = fit(solution, "ca", (scheme, 0.5))
+    assert row["order_L1"] >= 0.9
+    assert row["verdict"] == Verdict.AGREE
+
+
+@pytest.mark.parametrize("scheme", [("upwind", 0.5), ("limited", 0.5)])
+@pytest.mark.parametrize(("solution", "name"), [(SATURATED, "v_up"), (CURVED, "kappa")])
+def test_automaton_with_a_wrong_closure_does_not(fit, solution, name, scheme):
+    good, bad = (fit(with_wrong(solution, name, f), "ca", scheme) for f in (1.0, 1.1))
+    assert bad["L1_on_finest"] > 2 * good["L1_on_finest"]
+    assert bad["order_L1"] < good["order_L1"] - 0.2
+
+
+def test_thick_step_is_twice_the_limited_one_and_keeps_the_layer_positive():
+    x = (np.arange(50) + 0.5) * SATURATED.length / 50
+    pile = bcre_ca.Pile(*SATURATED.layers(x, 0.0))
+    rule = bcre_ca.Rule(0.8, 0.0, 1e14, 0.3, SATURATED.length / 50, 1.0, v_up=1.1)
+    bound = study.thick_step(pile, rule)
+    assert study.thick_step(pile, replace(rule, scheme="limited")) <= bound
+    end = bcre_ca.advance(pile, replace(rule, dt=bound), 200, "periodic")
+    assert end.R.min() > 0
+    assert bound > 1e10 * bcre_ca.largest_stable_step(pile, rule, "periodic")
+
+
+def test_limited_order_with_curvature_is_two_where_v_dt_over_d_is_small_on_every_grid():
+    solution = study.solutions()["surface mode, kappa = 0.1"]
+    m, cells = solution.material, (100, 200, 400)
+
+    def error(n, share):
+        d = solution.length / n
+        x = (np.arange(n) + 0.5) * d
+        if share is not None:
+            return study.errors(solution, *study.automaton_layer(solution, n, share, "limited"))
+        steps = int(np.ceil(solution.until / (0.01 * d**2 / m.kappa)))
+        dt = solution.until / steps
+        rule = bcre_ca.Rule(m.v, 0, m.gamma, m.Sc, d, dt, scheme="limited", kappa=m.kappa)
+        assert m.v * dt / d < 0.02
+        _, R = bcre_ca.evolve(*solution.layers(x, 0.0), rule, steps, "periodic")
+        return study.errors(solution, x, R)
+
+    def order(share):
+        found = np.array([error(n, share)["L1"] for n in cells])
+        return study.observed_order(np.array(cells, float), found, 0.0)
+
+    assert order(None) > 1.8
+    assert order(0.5) < 1.7
 
 
 def test_pde_with_a_wrong_coefficient_does_not_converge(fit):
@@ -132,6 +208,8 @@ def test_before_the_breaking_time_the_same_differences_fall_at_the_formal_order(
 
 
 def test_verdicts_of_the_claims_turn_with_one_bad_row():
+    agree, disagree = Verdict.AGREE, Verdict.DISAGREE
+
     def claims(order, error, broken):
         rows = [
             study._fit(
@@ -149,6 +227,10 @@ def test_verdicts_of_the_claims_turn_with_one_bad_row():
             )
             for model, p in (("ca", order), ("pde", 5.0))
         ]
+        rows += [
+            {**rows[0], "scheme": f"{scheme}, 0.5", "verdict": "agree", "order_L1": 2.0}
+            for scheme in ("calibrated", "limited")
+        ]
         past = {
             "model": "ca",
             "t_over_t_star": [1.1],
@@ -156,12 +238,34 @@ def test_verdicts_of_the_claims_turn_with_one_bad_row():
             "largest_at_x": [1.0],
         }
         tables = {"comparison": pd.DataFrame(rows), "past_breaking": pd.DataFrame(past)}
-        return [claim.verdict for claim in study.judge(tables)]
+        found = [claim.verdict for claim in study.judge(tables)]
+        assert found[2:4] == [agree, agree]
+        return [*found[:2], found[4]]
 
-    agree, disagree = Verdict.AGREE, Verdict.DISAGREE
     assert claims(1.0, 1e-5, 0.9) == [agree, agree, agree]
     assert claims(0.8, 1e-5, 0.9) == [disagree, agree, agree]
     assert claims(1.2, 1e-5, 0.9) == [disagree, agree, agree]
     assert claims(1.0, 1e-3, 0.9) == [agree, disagree, agree]
     assert claims(1.0, 0.02, 0.9) == [disagree, disagree, agree]
     assert claims(1.0, 1e-5, 1.5) == [agree, agree, disagree]
+
+
+def test_claim_of_a_scheme_turns_with_one_bad_row_and_names_it():
+    def row(scheme, order, error):
+        rows = pd.DataFrame({"cells": [100, 200, 400], "floor": 0.0})
+        for norm in ("L1", "L2", "max"):
+            rows[norm] = error * np.array([4.0**order, 2.0**order, 1.0])
+        named = study._named(scheme, 0.5)
+        return study._fit({"solution": "a", "model": "ca", "scheme": named}, rows)
+
+    def verdicts(calibrated, limited):
+        table = pd.DataFrame([row("calibrated", *calibrated), row("limited", *limited)])
+        return [study._claim_of_scheme(table, s).verdict for s in ("calibrated", "limited")]
+
+    agree, disagree = Verdict.AGREE, Verdict.DISAGREE
+    assert verdicts((1.0, 1e-4), (2.0, 1e-4)) == [agree, agree]
+    assert verdicts((2.5, 1e-4), (2.0, 1e-4)) == [agree, agree]
+    assert verdicts((0.8, 1e-4), (1.7, 1e-4)) == [disagree, disagree]
+    assert verdicts((1.0, 0.02), (2.3, 1e-4)) == [disagree, disagree]
+    off = study._claim_of_scheme(pd.DataFrame([row("limited", 1.7, 1e-4)]), "limited")
+    assert "a: 1.7" in off.evidence

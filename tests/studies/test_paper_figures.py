@@ -42,6 +42,8 @@ def test_difference_of_figures_2_and_3_is_the_automatons_own_diffusion(case):
     for kind in ("difference", "difference_effective", "difference_with_D_eff"):
         assert row[f"{kind}_error"] <= SHARE * max(row[kind], TOLERANCE)
     assert row["d"] == 1 / case[1]
+    for scheme in paper_figures.SCHEMES:
+        assert row[f"difference_{scheme}"] < 0.2 * row["difference"]
 
 
 @pytest.mark.parametrize("refinement", FIGURE_1)
@@ -77,7 +79,7 @@ def test_figures_are_refined_at_a_fixed_courant_number(refinement):
     assert figure_scene("figure2", refinement).time.until == load("figure2").time.until
 
 
-def table(verdicts):
+def table(verdicts, calibrated=0.01):
     """Made-up rows, coarse and fine, with the given verdicts."""
     rows = [
         {
@@ -85,6 +87,9 @@ def table(verdicts):
             "case": name,
             "difference": 0.5,
             "difference_effective": 0.01,
+            "difference_calibrated": calibrated,
+            "difference_limited": 0.02,
+            "d": 1.0,
             "verdict": verdict,
         }
         for name, pair in zip(paper_figures.FIGURES, verdicts, strict=True)
@@ -108,6 +113,7 @@ def test_claim_of_a_figure_is_judged_on_the_papers_own_cells():
         "figure3 profile",
         "figure1 climb",
         "figure1_between climb",
+        "other schemes",
     ]
     assert [claim.verdict for claim in claims] == [
         Verdict.UNRESOLVED,
@@ -115,7 +121,16 @@ def test_claim_of_a_figure_is_judged_on_the_papers_own_cells():
         Verdict.AGREE,
         Verdict.UNRESOLVED,
         Verdict.UNRESOLVED,
+        Verdict.AGREE,
     ]
+
+
+def test_a_scheme_that_is_not_nearer_to_bcre_turns_its_claim():
+    pairs = [("agree", "agree")] * 3
+    assert paper_figures.judge(table(pairs))[-1].verdict is Verdict.AGREE
+    assert paper_figures.judge(table(pairs, calibrated=0.6))[-1].verdict is Verdict.DISAGREE
+    unresolved = paper_figures.judge(table([("unresolved",) * 2] * 3))[-1]
+    assert unresolved.verdict is Verdict.UNRESOLVED
 
 
 def test_climb_time_is_that_of_a_scarp_of_constant_speed():

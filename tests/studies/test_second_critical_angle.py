@@ -9,8 +9,10 @@ from bcre_studies import second_critical_angle
 from bcre_studies.claim import Verdict
 from bcre_studies.climb import Bracket, climb, threshold
 from bcre_studies.critical_slope import (
+    calibrated_rule,
     effective_for_growth,
     measure_sd_automaton,
+    measure_sd_of,
     measure_sd_pde,
 )
 from bcre_studies.outcome import Outcome
@@ -123,13 +125,33 @@ def _table(automaton_sd, automaton_outcome):
         "automaton d/4": 1.4,
         "verdict": effective,
     }
-    return {"comparison": pd.DataFrame([sd, outcome, threshold_row])}
+    calibrated = {**sd, "quantity": second_critical_angle.SD_CALIBRATED}
+    return {"comparison": pd.DataFrame([sd, outcome, threshold_row, calibrated])}
 
 
 def test_the_verdict_on_the_closed_form_turns_when_the_measurement_is_off_by_a_percent():
     good = second_critical_angle.judge(_table(1.7157, "yes"))[0]
     bad = second_critical_angle.judge(_table(1.7157 * 1.01, "yes"))[0]
     assert (good.verdict, bad.verdict) == (Verdict.AGREE, Verdict.DISAGREE)
+
+
+def test_the_verdict_on_the_calibrated_closed_form_turns_too():
+    claims = [second_critical_angle.judge(_table(sd, "yes"))[5] for sd in (1.7157, 1.7157 * 1.01)]
+    assert [claim.name for claim in claims] == ["closed form of Sd, calibrated automaton"] * 2
+    assert [claim.verdict for claim in claims] == [Verdict.AGREE, Verdict.DISAGREE]
+
+
+@pytest.mark.parametrize("material", MATERIALS)
+@pytest.mark.parametrize("d", [0.7, 2.0])
+def test_the_calibrated_automatons_Sd_is_that_of_its_rule_and_nearer_to_bcre(material, d):
+    rule = calibrated_rule(material, d)
+    assert rule.effective_diffusion() == pytest.approx(material.D, rel=1e-9)
+    assert rule.dt <= rule.max_stable_step()
+    measured = measure_sd_of(rule)
+    assert measured == pytest.approx(rule.second_critical_slope() - rule.Sc, rel=1e-3)
+    upwind = second_critical_excess(material.v, material.D, material.gamma, d)
+    bcre = material.v**2 / (4 * material.D * material.gamma)
+    assert abs(measured - bcre) < abs(upwind - bcre)
 
 
 def test_the_evidence_names_the_cases_that_differ():
