@@ -57,9 +57,12 @@ class Coefficients(NamedTuple):
 
 @register_jitable  # type: ignore[untyped-decorator]
 def fold(p: Parameters, dt: float) -> Coefficients:
-    """The coefficients of a step dt."""
+    """The coefficients of a step dt.
+
+    d d and not d**2, which Python and the compiler round differently for one d in a thousand.
+    """
     c = p.v * dt / p.d
-    b = _diffusion(p.D * dt / p.d**2, c, p.calibrated)
+    b = _diffusion(p.D * dt / (p.d * p.d), c, p.calibrated)
     k = p.gamma * dt / p.d
     return Coefficients(
         c,
@@ -68,7 +71,7 @@ def fold(p: Parameters, dt: float) -> Coefficients:
         k,
         p.slope * p.d,
         _saturation(p.gamma, p.v_up),
-        _scaled(p.kappa, dt / p.d**2),
+        _scaled(p.kappa, dt / (p.d * p.d)),
         _scaled(p.calibrated, k / 2),
         p.dry,
     )

@@ -58,7 +58,7 @@ def evolve(
     Parameters
     ----------
     h, R: static and rolling layer, lengths, shape (N,); or (scenes, N) for many piles of one rule,
-        which are shared out among the processors. Arithmetic is in single precision where both
+        which are shared out among the processors. They are kept in single precision where both
         are float32, else in double.
     steps: number of steps, >= 0.
     ends: ``"open"`` (closed top, open foot) or ``"periodic"`` (in h + Sc x and R).

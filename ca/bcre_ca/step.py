@@ -65,10 +65,11 @@ def _synchronous(h: Array, R: Array, rule: Rule, ends: Ends) -> tuple[Array, Arr
         outflow = 0.0
     else:
         flux_out = np.append(q * R[:-1] - b * R[1:], c * R[-1])
-        flux_in = np.append(0.0, flux_out[:-1])
+        nothing = R.dtype.type(0)
+        flux_in = np.append(nothing, flux_out[:-1])
         drop = (h[:-1] - h[1:]) - s
-        bend = np.append(0.0, drop[:-1] - drop[1:])[: drop.size]
-        above = drop[-1] if drop.size else 0.0
+        bend = np.append(nothing, drop[:-1] - drop[1:])[: drop.size]
+        above = drop[-1] if drop.size else nothing
         at_foot = eroded(R[-1], 0.0, above, k, a, m, None)
         exchange = np.append(eroded(R[:-1], drop, bend, k, a, m, u), at_foot)
         outflow = float(flux_out[-1])

@@ -120,6 +120,14 @@ def _largest_bend(h, kappa):  # type: ignore[no-untyped-def]
     return _float_of(largest)
 
 
+@numba.njit(error_model="numpy")
+def _bend_at_foot(h, repose_drop, kappa):  # type: ignore[no-untyped-def]
+    """That of the last cell, beyond which the surface goes on at repose."""
+    if kappa is None or h.size == 1:
+        return 0.0
+    return (h[h.size - 2] - h[h.size - 1]) - repose_drop
+
+
 @numba.njit(error_model="numpy", fastmath={"reassoc"})
 def _is_finite(h, R):  # type: ignore[no-untyped-def]
     total = 0.0
@@ -129,8 +137,11 @@ def _is_finite(h, R):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(error_model="numpy")
-def stable_step(h, R, p, fall):  # type: ignore[no-untyped-def]
-    """The largest stable step for these layers; NaN where they are not finite."""
+def stable_step(h, R, p, fall, foot):  # type: ignore[no-untyped-def]
+    """The largest stable step for these layers; NaN where they are not finite.
+
+    ``foot`` says whether the last cell is that at the open foot rather than one of a window.
+    """
     if not _is_finite(h, R):
         return math.nan
     largest, shortfall = _extremes(h, R, p.slope * p.d)
@@ -142,6 +153,8 @@ def stable_step(h, R, p, fall):  # type: ignore[no-untyped-def]
         before = h[last - 1] - h[last] if last > 0 else across
         after = h[0] - h[1] if last > 0 else across
         bend = max(bend, before - across, across - after)
+    elif foot:
+        bend = max(bend, _bend_at_foot(h, p.slope * p.d, p.kappa))
     return largest_step(p, largest, _sink(p.gamma * shortfall / p.d, bend, p.d, p.kappa))
 
 
@@ -155,8 +168,8 @@ def _sink(loss, bend, d, kappa):  # type: ignore[no-untyped-def]
 @numba.njit(error_model="numpy")
 def _bound(h, R, p, fall, a, b, whole):  # type: ignore[no-untyped-def]
     if whole:
-        return stable_step(h, R, p, fall)
-    return stable_step(h[a:b], R[a:b], p, None)
+        return stable_step(h, R, p, fall, True)
+    return stable_step(h[a:b], R[a:b], p, None, fall is None and b == h.size)
 
 
 @numba.njit(error_model="numpy")
@@ -267,6 +280,6 @@ def entries(sources: str):  # type: ignore[no-untyped-def]
     @numba.njit(cache=True, error_model="numpy")
     def bound(h, R, p, fall):  # type: ignore[no-untyped-def]
         sources  # noqa: B018
-        return stable_step(h, R, p, fall)
+        return stable_step(h, R, p, fall, True)
 
     return march, follow, batch, bound
