@@ -160,8 +160,8 @@ class Rule:
         the others see :func:`bcre_ca.theory.max_stable_step`. A sweep downhill adds to a cell what
         leaves the one above before it looks at it, so that up to R/(1 - v dt/d - D dt/d^2)
         exchange there: its second bound is (gamma R/d + v/d + D/d^2) dt <= 1. A sweep uphill, and
-        one downhill across joined ends, looks at a surface on which it has already laid sand down,
-        below a slope steeper than any at the start: there R >= 0 is not assured.
+        one downhill across joined ends, looks at cells downhill on which it has just laid sand
+        down, so that slopes fall further below repose than at the start: R >= 0 is not assured.
 
         Parameters
         ----------

@@ -12,7 +12,8 @@ from the old state; the in-place rules visit the cells one after the other and r
 
 Ends: ``"open"`` has a closed top (no flux into cell 0) and an open foot, where R leaves by
 advection and the surface goes on at the repose slope, so that nothing is exchanged in the last
-cell but by curvature. ``"periodic"`` joins the ends in R and in the height above the repose line, u = h + Sc x.
+cell but by curvature. ``"periodic"`` joins the ends in R and in the height above the repose line,
+u = h + Sc x.
 
 A calibrated rule, a curvature term and a saturated exchange change what is eroded
 (:mod:`bcre_ca.exchange`) and the coefficients (:mod:`bcre_ca.coefficients`), not the step; the

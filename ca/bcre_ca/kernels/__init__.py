@@ -55,7 +55,7 @@ def march(h: Array, R: Array, rule: Rule, steps: int, ends: Ends) -> float:
     """
     K = _as_type(rule.coefficients(), h.dtype)
     limited, rightwards = rule.parameters().limited, _rightwards(rule)
-    fall = _fall(rule, h.shape[-1], ends)
+    fall = _fall(rule, h, ends)
     accounts = np.zeros((*h.shape[:-1], 2))
     run = _fixed if h.ndim == 1 else _batch
     run(h, R, K, steps, accounts, fall, limited, rightwards)
@@ -79,7 +79,7 @@ def follow(
         margin,
         rule.calibrating_step(),
         account,
-        _fall(rule, h.size, ends),
+        _fall(rule, h, ends),
         _rightwards(rule),
         counts,
     )
@@ -88,7 +88,7 @@ def follow(
 
 def stable_step(h: Array, R: Array, rule: Rule, ends: Ends) -> float:
     """The largest stable step for these layers; NaN where they are not finite."""
-    return float(_bound(h, R, rule.parameters(), _fall(rule, h.size, ends)))
+    return float(_bound(h, R, rule.parameters(), _fall(rule, h, ends)))
 
 
 def _rightwards(rule: Rule) -> bool | None:
@@ -96,9 +96,9 @@ def _rightwards(rule: Rule) -> bool | None:
     return None if rule.order == "synchronous" else rule.order == "right"
 
 
-def _fall(rule: Rule, cells: int, ends: Ends) -> float | None:
-    """None tells the compiler that the ends are open."""
-    return period_drop(rule, cells) if ends == "periodic" else None
+def _fall(rule: Rule, h: Array, ends: Ends) -> float | None:
+    """In the number type of h; None tells the compiler that the ends are open."""
+    return h.dtype.type(period_drop(rule, h.shape[-1])) if ends == "periodic" else None
 
 
 def _as_type(K: Coefficients, dtype: np.dtype[np.float64]) -> Coefficients:
