@@ -23,6 +23,8 @@ STUDIES = (
     "one_variable",
     "order_of_accuracy",
     "scene_needs",
+    "stability",
+    "hard_cases",
 )
 
 

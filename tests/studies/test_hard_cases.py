@@ -1,0 +1,151 @@
+"""What comes of hard scenes: survival, refusal, failure that says where; mass; the verdicts."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import bcre_ca
+import bcre_pde
+from bcre_studies import hard_cases as study
+from bcre_studies.claim import Verdict
+from bcre_studies.hard_cases import FAILS, REFUSED, SURVIVES, Case
+
+SCENES = study.scenes()
+
+
+@pytest.mark.parametrize(
+    ("scene", "told"),
+    [
+        ("v = 2.5, d = 1, dt = 1", "dt = 1 cannot be stable: v dt/d"),
+        ("figure 1, dt = 1", "the avalanche outgrew the step at t = "),
+    ],
+)
+def test_fixed_steps_are_refused_where_known_and_fail_by_name_where_outgrown(scene, told):
+    row = study._try(Case(scene, "ca", "upwind", 1.0))
+    assert row["verdict"] == (REFUSED if "2.5" in scene else FAILS)
+    assert row["told"].startswith(told)
+    assert study._try(Case(scene, "ca"))["verdict"].startswith(SURVIVES)
+
+
+def test_an_avalanche_outgrows_its_step_after_t_200_where_R_passes_100():
+    told = study._try(Case("figure 1, dt = 1", "ca", "upwind", 1.0))["told"]
+    assert 200 < float(told.split("t = ")[1].split(",")[0]) < 400
+    assert 100 < float(told.split("R = ")[1].split(";")[0]) < 120
+    assert "in cell 63" in told
+
+
+@pytest.mark.parametrize("scene", ["1 cell", "2 cells"])
+def test_grids_too_small_for_bcre_are_refused_and_no_trouble_to_the_automaton(scene):
+    row = study._try(Case(scene, "pde"))
+    assert (row["verdict"], row["mass_error_at_most"]) == (REFUSED, "")
+    assert "must be at least 8" in row["told"]
+    for scheme in study.SCHEMES:
+        assert study._try(Case(scene, "ca", scheme))["verdict"] == SURVIVES
+
+
+@pytest.mark.parametrize("scheme", study.SCHEMES)
+@pytest.mark.parametrize("scene", [name for name in SCENES if name != "kappa = 10"])
+def test_step_that_follows_its_bounds_survives_everything_with_R_not_negative(scene, scheme):
+    row = study._try(Case(scene, "ca", scheme))
+    assert row["verdict"].startswith(SURVIVES)
+    assert row["smallest_R"] >= 0
+    assert row["mass_error_at_most"] <= 1e-12
+    assert np.isfinite(row["largest_R"])
+
+
+def end_of(name, model):
+    """h at the start and the end, and R, of the automaton or of BCRE."""
+    scene = SCENES[name]
+    if model == "pde":
+        end = bcre_pde.solve(scene.problem, [0.0, scene.until], scene.cells)
+        return end.h[0], end.h[-1], end.R
+    h, R = scene.problem.initial(scene.centres())
+    (end,) = bcre_ca.frames(bcre_ca.Pile(h, R), study.rule_for(scene, "upwind"), [scene.until])
+    return h, end.h, np.array([R, end.R])
+
+
+@pytest.mark.parametrize("model", ["ca", "pde"])
+def test_layer_carried_up_a_surface_that_rises_in_x_is_laid_down_there(model):
+    before, after, R = end_of("valley, S = 0.8 and -0.8", model)
+    assert (after - before)[:45].max() < 0.01
+    assert (after - before)[50:].max() > 0.05
+    assert (after - before)[90:].max() < 1e-3
+    before, after, R = end_of("hill, S = -0.8 and 0.8", model)
+    assert (after - before)[:50].sum() > 0.8 * R[0].sum()
+    assert (after - before)[50:].max() < 0.01
+
+
+def test_long_run_keeps_its_mass(monkeypatch):
+    row = study._try(study._cases(study.long_run())[0])
+    assert row["verdict"] == SURVIVES
+    assert row["mass_error_at_most"] <= study.MASS
+    assert study.long_run().until / study.long_run().steps[0] == 1e7
+
+
+def test_failure_at_the_start_of_the_solver_is_a_refusal_and_later_one_is_not():
+    at_start = study._refusal(bcre_pde.SolveError("too many", 0.0, 3))
+    later = study._refusal(bcre_pde.SolveError("gave up", 2.0, 3))
+    assert (at_start["verdict"], later["verdict"]) == (REFUSED, FAILS)
+    assert study._refusal(FloatingPointError("outgrew"))["verdict"] == FAILS
+
+
+def scarp_rows(drift):
+    return [
+        {"model": model, "kappa": kappa, "cells": cells, "max_R": value, "place": 50.0}
+        for model, kappa in (("pde", 0.0), ("pde", 0.005), ("ca", 0.0))
+        for cells, value in ((400, 10.0 + drift), (200, 10.0))
+    ]
+
+
+def test_scarp_is_resolved_where_the_last_grid_changes_it_by_less_than_a_percent():
+    table = study._with_changes(scarp_rows(0.09))
+    assert list(table["cells"]) == [200, 400] * 3
+    assert set(table["verdict"]) == {"resolved"}
+    assert list(table["change_max_R"]) == ["", 0.009] * 3
+    assert set(study._with_changes(scarp_rows(0.11))["verdict"]) == {"unresolved"}
+
+
+def test_scarp_of_the_automaton_climbs_on_as_the_cell_shrinks():
+    rows = [study._scarp(("ca", 0.0, cells)) for cells in (100, 200)]
+    assert rows[1]["max_R"] > 1.2 * rows[0]["max_R"]
+    assert rows[1]["place"] < 0.95 * rows[0]["place"]
+
+
+def test_adapted_step_of_figure_2_gives_the_fixed_steps_R():
+    row = study._adapt("figure2")
+    assert row["verdict"] == Verdict.AGREE
+    assert row["difference"] < row["halving_changes"]
+    row = study._adapt("figure1")
+    assert row["steps"] < 0.6 * row["fixed_steps"]
+    assert row["lowered"] > 3
+
+
+def made_up(told="in cell 3, t = 4: dt = 1", smallest=0.0, mass=1e-13, faults="as expected"):
+    rows = [
+        {"scene": study.long_run().name, "verdict": SURVIVES, "told": "", "smallest_R": smallest},
+        {"scene": "A", "verdict": FAILS, "told": told, "smallest_R": ""},
+        {"scene": "B", "verdict": REFUSED, "told": "dt = 1: must not", "smallest_R": ""},
+    ]
+    common = {"model": "ca", "largest_R": 1.0, "mass_error_at_most": ""}
+    table = [common | row for row in rows]
+    table[0]["mass_error_at_most"] = mass
+    adaptive = {"scene": "figure2", "difference": 0.1, "halving_changes": 0.2, "steps": 1}
+    return {
+        "comparison": pd.DataFrame(table),
+        "scarp": study._with_changes(scarp_rows(0.0)),
+        "adaptive_step": pd.DataFrame([adaptive | {"fixed_steps": 2, "verdict": "agree"}]),
+        "faults": pd.DataFrame([{"fault": "disk full", "verdict": faults}]),
+    }
+
+
+def test_claims_fail_by_what_they_claim():
+    def failing(**changes):
+        claims = study.judge(made_up(**changes))
+        return [claim.name for claim in claims if claim.verdict is not Verdict.AGREE]
+
+    assert failing() == []
+    assert failing(told="it broke at t = 4") == ["each failing model says where"]
+    assert failing(smallest=-0.1) == ["R >= 0"]
+    assert failing(mass=1e-11) == ["mass"]
+    assert failing(faults="not") == ["faults"]
+    assert failing(smallest=float("nan")) == ["finite"]
