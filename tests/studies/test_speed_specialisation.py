@@ -13,7 +13,7 @@ def test_term_that_is_present_but_tiny_changes_no_bit(term, monkeypatch):
     with_term, without = (call() for call in study._pair(term, 200))
     assert np.array_equal(with_term[0], without[0])
     assert np.array_equal(with_term[1], without[1])
-    h, R = study._layers(200)
+    _, R = study._layers(200)
     assert not np.array_equal(without[1], R)
 
 
