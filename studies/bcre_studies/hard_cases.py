@@ -20,15 +20,13 @@ no solution that its grid would converge to. The table ``scarp`` refines both: m
 the scarp at t = 250 with kappa = 0 and kappa = 0.005, and the automaton, whose cell takes the
 part of the curvature term, kappa_eff = gamma d/2, so that it too depends on its grid.
 
-The table ``adaptive_step`` compares the step that follows its bounds with a fixed one, of 0.8 of
-the bound at the end: the difference in R, relative L1, against what halving the fixed step
-changes. The table ``faults`` is that of :mod:`bcre_studies.faults`.
+The tables ``scarp``, ``adaptive_step`` and ``faults`` are those of the modules ``scarp_grids``,
+``adaptive_step`` and ``faults``.
 """
 
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
@@ -37,15 +35,12 @@ import pandas as pd
 import bcre_ca
 import bcre_pde
 from bcre_ca.rule import Scheme
-from bcre_studies import faults
+from bcre_studies import adaptive_step, faults, scarp_grids
 from bcre_studies.claim import Claim, Verdict
-from bcre_studies.compare import relative_difference, significant
+from bcre_studies.compare import significant
 from bcre_studies.hard_scenes import HardScene, long_run, scenes
-from bcre_studies.observe import scarps
 from bcre_studies.profiles import Array
 from bcre_studies.report import style
-from bcre_studies.scene import load
-from bcre_studies.simulate import as_run, problem_of, rule_of, run_automaton
 from bcre_studies.work import each
 
 if TYPE_CHECKING:
@@ -60,13 +55,6 @@ FRAMES = 5
 LEAST_MASS_ERROR = 1e-13
 """Below this they are not told apart: rounding differs from processor to processor."""
 
-SCARP_CELLS = (200, 400, 800, 1600)
-SCARP_CELLS_AUTOMATON = (100, 200, 400, 800)
-SCARP_TIME = 250.0
-RESOLVED = 0.01
-WHY_RESOLVED = "1 % of max R and of the scarp's place from the last grid but one to the last"
-MEASURED = ("max_R", "place")
-ADAPTED = ("figure1", "figure2", "figure3", "climbing_wave")
 
 Row = dict[str, Any]
 
@@ -82,15 +70,11 @@ class Case(NamedTuple):
 
 def run() -> dict[str, pd.DataFrame]:
     """One row a scene and model; the scarp, grid by grid; steps that adapt; faults."""
-    # What takes longest first.
-    grids = [("pde", kappa, cells) for kappa in (0.005, 0.0) for cells in reversed(SCARP_CELLS)]
-    grids += [("ca", 0.0, cells) for cells in SCARP_CELLS_AUTOMATON]
-    scarp = each(_scarp, grids, "hard_cases, scarp")
     cases = [case for scene in [*scenes().values(), long_run()] for case in _cases(scene)]
     return {
         "comparison": pd.DataFrame(each(_try, cases, "hard_cases")),
-        "scarp": _with_changes(scarp),
-        "adaptive_step": pd.DataFrame(each(_adapt, ADAPTED, "hard_cases, steps")),
+        "scarp": scarp_grids.run(),
+        "adaptive_step": adaptive_step.run(),
         "faults": faults.try_all(),
     }
 
@@ -200,72 +184,6 @@ def _pde(scene: HardScene) -> Outcome:
     )
 
 
-def _scarp(case: tuple[str, float, int]) -> Row:
-    """Max R and place of the scarp of figure 1 at t = 250."""
-    model, kappa, cells = case
-    scene = load("figure1").with_changes(until=SCARP_TIME)
-    times = [0.0, SCARP_TIME]
-    if model == "ca":
-        scene = scene.with_changes(cells=cells, step=0.4 * 100 / cells)
-        run = run_automaton(scene, times)
-    else:
-        solution = bcre_pde.solve(problem_of(scene, kappa=kappa), times, cells)
-        run = as_run(scene, solution)
-    _, places = scarps(run)
-    return {
-        "model": model,
-        "kappa": kappa,
-        "cells": cells,
-        "max_R": significant(float(run.R[-1].max()), 4),
-        "place": significant(float(places[-1]), 4),
-    }
-
-
-def _with_changes(rows: list[Row]) -> pd.DataFrame:
-    """Grids in order, with the change from the one before; a model's last change decides."""
-    table = []
-    for model, kappa in (("pde", 0.0), ("pde", 0.005), ("ca", 0.0)):
-        grids = sorted(
-            (row for row in rows if (row["model"], row["kappa"]) == (model, kappa)),
-            key=lambda row: int(row["cells"]),
-        )
-        changes: list[Row] = [
-            {f"change_{key}": round(abs(fine[key] / coarse[key] - 1), 4) for key in MEASURED}
-            for coarse, fine in pairwise(grids)
-        ]
-        resolved = max(changes[-1].values()) <= RESOLVED
-        verdict = {"verdict": "resolved" if resolved else "unresolved"}
-        none: Row = dict.fromkeys(changes[-1], "")
-        table += [
-            row | change | verdict for row, change in zip(grids, [none, *changes], strict=True)
-        ]
-    return pd.DataFrame(table)
-
-
-def _adapt(name: str) -> Row:
-    """A run whose step follows its bounds, and two with fixed steps."""
-    scene = load(name)
-    start = bcre_ca.Pile(*scene.initial(scene.centres()))
-    rule, ends, until = rule_of(scene), scene.domain.ends, scene.time.until
-    (auto,) = bcre_ca.frames(start, rule, [until], ends)
-    dt = bcre_ca.MARGIN * bcre_ca.largest_stable_step(auto, rule, ends)
-    fixed, half = (next(bcre_ca.frames(start, rule, [until], ends, step)) for step in (dt, dt / 2))
-    difference = relative_difference(auto.R, fixed.R)
-    own = relative_difference(half.R, fixed.R)
-    return {
-        "scene": name,
-        "steps": auto.steps,
-        "lowered": auto.lowered,
-        "raised": auto.raised,
-        "redone": auto.redone,
-        "fixed_dt": significant(dt, 3),
-        "fixed_steps": fixed.steps,
-        "difference": significant(difference, 2),
-        "halving_changes": significant(own, 2),
-        "verdict": str(Verdict.AGREE if difference <= own else Verdict.DISAGREE),
-    }
-
-
 def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     """Finite numbers, mass, failures that say where; the scarp; steps that adapt; faults."""
     table = tables["comparison"]
@@ -274,8 +192,8 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
         _mass(table),
         _says_where(table),
         _not_negative(table),
-        _scarp_resolved(tables["scarp"]),
-        _adapted(tables["adaptive_step"]),
+        scarp_grids.claim(tables["scarp"]),
+        adaptive_step.claim(tables["adaptive_step"]),
         _faults(tables["faults"]),
     ]
 
@@ -348,49 +266,6 @@ def _not_negative(table: pd.DataFrame) -> Claim:
     )
 
 
-def _scarp_resolved(table: pd.DataFrame) -> Claim:
-    def told(model: str, kappa: float) -> str:
-        rows = table[(table["model"] == model) & (table["kappa"] == kappa)]
-        R, place = (", ".join(f"{value:g}" for value in rows[key]) for key in ("max_R", "place"))
-        return f"max R {R}, place {place} ({rows['verdict'].iloc[-1]})"
-
-    curved = table[(table["model"] == "pde") & (table["kappa"] > 0)]
-    grids = ", ".join(map(str, SCARP_CELLS))
-    return Claim(
-        name="the scarp needs the curvature term",
-        statement="Past the scarp of figure 1 BCRE converges with kappa = 0.005.",
-        verdict=_word((curved["verdict"] == "resolved").all()),
-        evidence=f"at t = {SCARP_TIME:g} on {grids} cells: with kappa = 0.005 "
-        f"{told('pde', 0.005)}; with kappa = 0 {told('pde', 0.0)}. The automaton, of "
-        f"kappa_eff = gamma d/2, on {', '.join(map(str, SCARP_CELLS_AUTOMATON))} cells: "
-        f"{told('ca', 0.0)}: its curvature goes with the cell, and the scarp with it",
-        tolerance=WHY_RESOLVED,
-    )
-
-
-def _adapted(table: pd.DataFrame) -> Claim:
-    off = table[table["verdict"] != str(Verdict.AGREE)]
-    rows = "; ".join(
-        f"{row['scene']}: {row['difference']:g} against {row['halving_changes']:g}, "
-        f"{row['steps']} steps against {row['fixed_steps']}"
-        for _, row in table.iterrows()
-    )
-    why = (
-        " Where the layer grows the step that follows its bounds is longer at first than the fixed "
-        "one, and its error larger, as that of a first-order step must be."
-        if len(off)
-        else ""
-    )
-    return Claim(
-        name="steps that adapt",
-        statement="A step that follows its bounds gives the R of a fixed step, within the latter's "
-        "own error.",
-        verdict=_word(len(off) == 0),
-        evidence=f"{rows}.{why}",
-        tolerance="what halving the fixed step changes, relative L1 of R at the end",
-    )
-
-
 def _faults(table: pd.DataFrame) -> Claim:
     good = table["verdict"] == "as expected"
     others = "" if good.all() else f"; not so: {', '.join(table.loc[~good, 'fault'])}"
@@ -413,7 +288,7 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
     axes = figure.subplot_mosaic([["runs", "max_R"], ["runs", "place"]], width_ratios=[1.25, 1])
     _draw_runs(axes["runs"], tables["comparison"])
     for key, label in (("max_R", "max R"), ("place", "place of the scarp x")):
-        _draw_scarp(axes[key], tables["scarp"], key, label)
+        scarp_grids.draw(axes[key], tables["scarp"], key, label)
     axes["max_R"].set_title("figure 1 at t = 250, on finer and finer grids", loc="left")
     axes["max_R"].legend()
     return figure
@@ -454,22 +329,3 @@ def _draw_runs(axis: Axes, table: pd.DataFrame) -> None:
     axis.set_yticks(range(len(names)), names)
     axis.set(xlim=(-0.5, len(columns) - 0.5), ylim=(len(names) - 0.5, -0.5))
     axis.legend(loc="lower center", bbox_to_anchor=(0.3, 1.0), ncols=2)
-
-
-def _draw_scarp(axis: Axes, table: pd.DataFrame, key: str, label: str) -> None:
-    looks = {
-        ("pde", 0.0): {**style.MODELS["pde"], "marker": "s", "label": "BCRE, kappa = 0"},
-        ("pde", 0.005): {
-            **style.MODELS["pde effective"],
-            "marker": "^",
-            "label": "BCRE, kappa = 0.005",
-        },
-        ("ca", 0.0): {**style.MODELS["ca"], "marker": "o", "label": "automaton"},
-    }
-    for (model, kappa), look in looks.items():
-        rows = table[(table["model"] == model) & (table["kappa"] == kappa)]
-        axis.semilogx(rows["cells"], rows[key], **look)
-    cells = sorted(set(table["cells"]))
-    axis.set_xticks(cells, [str(count) for count in cells])
-    axis.minorticks_off()
-    axis.set(xlabel="cells", ylabel=label)

@@ -6,6 +6,7 @@ import pytest
 
 import bcre_ca
 import bcre_pde
+from bcre_studies import adaptive_step, scarp_grids
 from bcre_studies import hard_cases as study
 from bcre_studies.claim import Verdict
 from bcre_studies.hard_cases import FAILS, REFUSED, SURVIVES, Case
@@ -98,24 +99,24 @@ def scarp_rows(drift):
 
 
 def test_scarp_is_resolved_where_the_last_grid_changes_it_by_less_than_a_percent():
-    table = study._with_changes(scarp_rows(0.09))
+    table = scarp_grids.with_changes(scarp_rows(0.09))
     assert list(table["cells"]) == [200, 400] * 3
     assert set(table["verdict"]) == {"resolved"}
     assert list(table["change_max_R"]) == ["", 0.009] * 3
-    assert set(study._with_changes(scarp_rows(0.11))["verdict"]) == {"unresolved"}
+    assert set(scarp_grids.with_changes(scarp_rows(0.11))["verdict"]) == {"unresolved"}
 
 
 def test_scarp_of_the_automaton_climbs_on_as_the_cell_shrinks():
-    rows = [study._scarp(("ca", 0.0, cells)) for cells in (100, 200)]
+    rows = [scarp_grids.on_grid(("ca", 0.0, cells)) for cells in (100, 200)]
     assert rows[1]["max_R"] > 1.2 * rows[0]["max_R"]
     assert rows[1]["place"] < 0.95 * rows[0]["place"]
 
 
 def test_adapted_step_of_figure_2_gives_the_fixed_steps_R():
-    row = study._adapt("figure2")
+    row = adaptive_step.compared("figure2")
     assert row["verdict"] == Verdict.AGREE
-    assert row["difference"] < row["halving_changes"]
-    row = study._adapt("figure1")
+    assert row["difference"] < row["fixed_error"]
+    row = adaptive_step.compared("figure1")
     assert row["steps"] < 0.6 * row["fixed_steps"]
     assert row["lowered"] > 3
 
@@ -129,10 +130,11 @@ def made_up(told="in cell 3, t = 4: dt = 1", smallest=0.0, mass=1e-13, faults="a
     common = {"model": "ca", "largest_R": 1.0, "mass_error_at_most": ""}
     table = [common | row for row in rows]
     table[0]["mass_error_at_most"] = mass
-    adaptive = {"scene": "figure2", "difference": 0.1, "halving_changes": 0.2, "steps": 1}
+    adaptive = {"scene": "figure2", "difference": 0.1, "error": 0.2, "fixed_error": 0.2, "steps": 1}
+    adaptive |= {"lowered": 0, "raised": 0}
     return {
         "comparison": pd.DataFrame(table),
-        "scarp": study._with_changes(scarp_rows(0.0)),
+        "scarp": scarp_grids.with_changes(scarp_rows(0.0)),
         "adaptive_step": pd.DataFrame([adaptive | {"fixed_steps": 2, "verdict": "agree"}]),
         "faults": pd.DataFrame([{"fault": "disk full", "verdict": faults}]),
     }
