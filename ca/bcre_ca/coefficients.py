@@ -16,13 +16,13 @@ from numba.extending import register_jitable
 class Parameters(NamedTuple):
     """A :class:`bcre_ca.Rule` without its dt, as compiled code takes it.
 
-    ``slope`` is the one at which the exchange vanishes. ``kappa``, ``v_up`` and ``dry`` are None
-    where the rule does without; ``calibrated``, ``limited`` and ``downhill``, for cells updated in
-    place one after the other downhill, are None or True.
+    ``slope`` is the one at which the exchange vanishes. ``D``, ``kappa``, ``v_up`` and ``dry`` are
+    None where the rule does without; ``calibrated``, ``limited`` and ``downhill``, for cells
+    updated in place one after the other downhill, are None or True.
     """
 
     v: float
-    D: float
+    D: float | None
     gamma: float
     slope: float
     d: float
@@ -41,11 +41,11 @@ class Coefficients(NamedTuple):
 
     The flux out of cell i is ``q R(i) - b R(i+1)`` and the exchange ``R(i) (k (h(i) - h(i+1) -
     s))``, in this order of operations. In a calibrated rule b is what the diffusion of the upwind
-    flux, (c/2)(1 - c), leaves of D dt/d^2, never less than 0.
+    flux, (c/2)(1 - c), leaves of D dt/d^2, never less than 0. Without D, b is None.
     """
 
     c: float
-    b: float
+    b: float | None
     q: float
     k: float
     s: float
@@ -62,12 +62,12 @@ def fold(p: Parameters, dt: float) -> Coefficients:
     d d and not d**2, which Python and the compiler round differently for one d in a thousand.
     """
     c = p.v * dt / p.d
-    b = _diffusion(p.D * dt / (p.d * p.d), c, p.calibrated)
+    b = _diffusion(_scaled_before(p.D, dt, p.d * p.d), c, p.calibrated)
     k = p.gamma * dt / p.d
     return Coefficients(
         c,
         b,
-        c + b,
+        _sum(c, b),
         k,
         p.slope * p.d,
         _saturation(p.gamma, p.v_up),
@@ -78,7 +78,9 @@ def fold(p: Parameters, dt: float) -> Coefficients:
 
 
 @register_jitable  # type: ignore[untyped-decorator]
-def _diffusion(b: float, c: float, calibrated: bool | None) -> float:
+def _diffusion(b: Any, c: float, calibrated: bool | None) -> Any:
+    if b is None:
+        return None
     if calibrated is None:
         return b
     return max(b - c * (1.0 - c) / 2, 0.0)
@@ -89,6 +91,20 @@ def _saturation(gamma: float, v_up: Any) -> Any:
     if v_up is None:
         return None
     return gamma / v_up
+
+
+@register_jitable  # type: ignore[untyped-decorator]
+def _scaled_before(value: Any, factor: float, divisor: float) -> Any:
+    if value is None:
+        return None
+    return value * factor / divisor
+
+
+@register_jitable  # type: ignore[untyped-decorator]
+def _sum(c: float, b: Any) -> float:
+    if b is None:
+        return c
+    return c + b  # type: ignore[no-any-return]
 
 
 @register_jitable  # type: ignore[untyped-decorator]
@@ -109,7 +125,7 @@ def largest_step(p: Parameters, largest_R: float, sink: float) -> float:
     """
     largest: float = _largest_step(
         p.v / p.d,
-        p.D / p.d**2,
+        _over(p.D, p.d**2),
         p.gamma / p.d * _exchanging(largest_R, p.gamma, p.v_up),
         _curvature_rate(_exchanging(largest_R, p.gamma, p.v_up), p.d, p.kappa),
         sink,
@@ -118,6 +134,13 @@ def largest_step(p: Parameters, largest_R: float, sink: float) -> float:
         p.downhill,
     )
     return largest
+
+
+@register_jitable  # type: ignore[untyped-decorator]
+def _over(D: float | None, area: float) -> float:
+    if D is None:
+        return 0.0
+    return D / area
 
 
 @register_jitable  # type: ignore[untyped-decorator]

@@ -66,8 +66,8 @@ def evolve(
     Raises
     ------
     UnstableStep
-        where dt cannot be stable for this start; FloatingPointError where the layers outgrew it
-        on the way; ValueError for layers of unequal, empty or non-finite content.
+        where dt cannot be stable for this start; FloatingPointError where the layers have outgrown
+        it by the end; ValueError for layers of unequal, empty or non-finite content.
     """
     static, rolling = _layers(h, R)
     _require_steps(steps)
@@ -184,7 +184,10 @@ def _advance_stably(pile: Pile, rule: Rule, steps: int, ends: Ends) -> Pile:
 def _require_outlasting(
     pile: Pile, rule: Rule, steps: int, ends: Ends, together: int = BLOCK
 ) -> None:
-    """Take the steps again, so many together, and say where the step ceased to be stable."""
+    """Take the steps again, so many together, and say where the step ceased to be stable.
+
+    An excess that is gone again after so many steps is not seen.
+    """
     for done in range(0, steps, together):
         h, R = pile.h.copy(), pile.R.copy()
         part = min(together, steps - done)

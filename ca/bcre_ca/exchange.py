@@ -1,4 +1,4 @@
-r"""The exchange law, in one place: what a step erodes from h and adds to R.
+r"""The exchange law, in one place: what a step erodes from h and adds to R; and the flux of R.
 
     dt E = X(R) (gamma dt (S - Sc) - kappa dt h_xx)
 
@@ -47,6 +47,22 @@ def eroded(
     if m is None:
         return X * (k * drop + (u * (1.0 - k * X)) * bend)
     return X * (k * drop + (u * (1.0 - k * X) - m) * bend)
+
+
+@register_jitable  # type: ignore[untyped-decorator]
+def carried(R: Any, R_next: Any, q: float, b: float | None) -> Any:
+    """dt/d F, what leaves a cell of layer R for the next one; ``b`` is None without diffusion."""
+    if b is None:
+        return q * R
+    return q * R - b * R_next
+
+
+@register_jitable  # type: ignore[untyped-decorator]
+def spread(difference: Any, b: float | None) -> Any:
+    """b times a difference of layers; 0 without diffusion."""
+    if b is None:
+        return 0.0
+    return b * difference
 
 
 @register_jitable  # type: ignore[untyped-decorator]

@@ -28,7 +28,7 @@ from numba.extending import overload, register_jitable
 from numpy.typing import NDArray
 
 from bcre_ca.coefficients import Coefficients
-from bcre_ca.exchange import eroded, settle
+from bcre_ca.exchange import eroded, settle, spread
 
 Array = NDArray[np.float64]
 
@@ -48,7 +48,7 @@ def step(h: Array, R: Array, K: Coefficients, fall: float | None) -> tuple[Array
     mid_above, mid_below = drops(h_mid, K.s, fall)
     _, R_mid_below = _differences(R_mid, periodic=fall is not None)
     drop = mid_below + 0.5 * (g - np.append(g[1:], g[0]))
-    flux_out = K.c * R_face - K.b * R_mid_below
+    flux_out = K.c * R_face - spread(R_mid_below, K.b)
     flux_in = np.append(flux_out[-1], flux_out[:-1])
     outflow = 0.0
     if fall is None:
@@ -85,7 +85,7 @@ def predicted(
     r = limited(R_above, R_below)
     g = limited(above, below)
     change = eroded(R, g, above - below, K.k, K.a, K.m, K.u)
-    R_mid = _within(R + 0.5 * ((K.b * (R_below - R_above) - K.c * r) + change), 2.0 * R)
+    R_mid = _within(R + 0.5 * ((spread(R_below - R_above, K.b) - K.c * r) + change), 2.0 * R)
     return h - 0.5 * change, R_mid, _within(R_mid + 0.5 * r, 2.0 * R), g
 
 

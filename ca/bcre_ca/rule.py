@@ -126,7 +126,7 @@ class Rule:
         """The rule without its dt, absent terms as None."""
         return Parameters(
             float(self.v),
-            float(self.D),
+            float(self.D) if self.D > 0 else None,
             float(self.gamma),
             float(self.exchange_slope()),
             float(self.d),
@@ -203,8 +203,8 @@ class Rule:
                 "scheme = 'limited': the second critical slope is known in closed form for "
                 "'upwind' and 'calibrated' only, whose steps on a frozen slope are linear"
             )
-        D = self.coefficients().b * self.d**2 / self.dt
-        return self.exchange_slope() + theory.second_critical_excess(self.v, D, self.gamma, self.d)
+        excess = theory.second_critical_excess(self.v, self.diffusion_left(), self.gamma, self.d)
+        return self.exchange_slope() + excess
 
     def effective_diffusion(self) -> float:
         """D_eff of the modified equation, to first order in d and dt.
@@ -215,8 +215,11 @@ class Rule:
         self._require_synchronous("D_eff")
         if self.scheme == "limited":
             return self.D
-        D = self.coefficients().b * self.d**2 / self.dt
-        return theory.effective_diffusion(self.v, D, self.d, self.dt)
+        return theory.effective_diffusion(self.v, self.diffusion_left(), self.d, self.dt)
+
+    def diffusion_left(self) -> float:
+        """What the rule lets R diffuse by itself: D, or what calibrating leaves of it, b d^2/dt."""
+        return (self.coefficients().b or 0.0) * self.d**2 / self.dt
 
     def effective_curvature(self, R0: float = 0.0) -> float:
         """kappa_eff of the modified equation; kappa + (gamma d/2)(1 - gamma R0 dt/d) for the upwind

@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bcre_ca import limited
-from bcre_ca.exchange import eroded, settle
+from bcre_ca.exchange import carried, eroded, settle
 from bcre_ca.rule import Ends, Rule
 
 Array = NDArray[np.float64]
@@ -59,13 +59,13 @@ def _synchronous(h: Array, R: Array, rule: Rule, ends: Ends) -> tuple[Array, Arr
     if ends == "periodic":
         R_next = np.append(R[1:], R[0])
         h_next = np.append(h[1:], h[0] - period_drop(rule, h.size))
-        flux_out = q * R - b * R_next
+        flux_out = carried(R, R_next, q, b)
         flux_in = np.append(flux_out[-1], flux_out[:-1])
         drop = (h - h_next) - s
         exchange = eroded(R, drop, np.append(drop[-1], drop[:-1]) - drop, k, a, m, u)
         outflow = 0.0
     else:
-        flux_out = np.append(q * R[:-1] - b * R[1:], c * R[-1])
+        flux_out = np.append(carried(R[:-1], R[1:], q, b), c * R[-1])
         nothing = R.dtype.type(0)
         flux_in = np.append(nothing, flux_out[:-1])
         drop = (h[:-1] - h[1:]) - s
@@ -85,12 +85,13 @@ def _in_place(h: Array, R: Array, rule: Rule, ends: Ends) -> tuple[Array, Array,
     outflow = 0.0
     for i in range(last + 1) if rule.order == "right" else range(last, -1, -1):
         if i < last:
-            flux = q * R[i] - b * R[i + 1]
-            exchange = R[i] * (k * ((h[i] - h[i + 1]) - s))
+            flux = carried(R[i], R[i + 1], q, b)
+            exchange = eroded(R[i], (h[i] - h[i + 1]) - s, 0.0, k, None, None, None)
             R[i + 1] += flux
         elif ends == "periodic":
-            flux = q * R[i] - b * R[0]
-            exchange = R[i] * (k * ((h[i] - (h[0] - period_drop(rule, h.size))) - s))
+            flux = carried(R[i], R[0], q, b)
+            drop = (h[i] - (h[0] - period_drop(rule, h.size))) - s
+            exchange = eroded(R[i], drop, 0.0, k, None, None, None)
             R[0] += flux
         else:
             flux, exchange = c * R[i], 0.0

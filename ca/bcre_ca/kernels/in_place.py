@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numba
 
-from bcre_ca.exchange import eroded, settle
+from bcre_ca.exchange import carried, eroded, settle
 from bcre_ca.kernels.sweep import add
 
 
@@ -23,7 +23,7 @@ def sweep(h, R, K, steps, account, fall, rightwards):  # type: ignore[no-untyped
 def _visit(h, R, i, K, fall):  # type: ignore[no-untyped-def]
     """Update cell i from what is found; return what leaves through the foot."""
     if i < h.size - 1:
-        flux = K.q * R[i] - K.b * R[i + 1]
+        flux = carried(R[i], R[i + 1], K.q, K.b)
         exchange = eroded(R[i], (h[i] - h[i + 1]) - K.s, 0.0, K.k, None, None, None)
         R[i + 1] += flux
         outflow = 0.0
@@ -41,7 +41,7 @@ def _visit_last(h, R, K, fall):  # type: ignore[no-untyped-def]
     if fall is None:
         foot = K.c * R[last]
         return foot, 0.0, foot
-    flux = K.q * R[last] - K.b * R[0]
+    flux = carried(R[last], R[0], K.q, K.b)
     exchange = eroded(R[last], (h[last] - (h[0] - fall)) - K.s, 0.0, K.k, None, None, None)
     R[0] += flux
     return flux, exchange, 0.0

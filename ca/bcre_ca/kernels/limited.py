@@ -8,6 +8,7 @@ from __future__ import annotations
 import numba
 import numpy as np
 
+from bcre_ca.exchange import spread
 from bcre_ca.kernels.sweep import add
 from bcre_ca.limited import corrected, predicted
 
@@ -31,7 +32,7 @@ def open_ends(h, R, K, steps, account):  # type: ignore[no-untyped-def]
         into_last = 0.0
         if last > 0:
             above = (h_mid[last - 1] - h_mid[last]) - K.s
-            into_last = K.c * R_face[last - 1] - K.b * (R_mid[last] - R_mid[last - 1])
+            into_last = K.c * R_face[last - 1] - spread(R_mid[last] - R_mid[last - 1], K.b)
             _correct(h, R, last, K, 0.0, (h_mid[0] - h_mid[1]) - K.s, scratch)
         h[last], R[last] = corrected(h[last], R[last], R_mid[last], into_last, foot, 0.0, above, K)
         add(account, foot)
@@ -54,10 +55,10 @@ def periodic(h, R, K, steps, fall):  # type: ignore[no-untyped-def]
         )
         drop = (h_mid[last] - (h_mid[0] - fall)) - K.s
         before = (h_mid[last - 1] - h_mid[last]) - K.s if last > 0 else drop
-        out = K.c * R_face[last] - K.b * (R_mid[0] - R_mid[last])
+        out = K.c * R_face[last] - spread(R_mid[0] - R_mid[last], K.b)
         into_last = out
         if last > 0:
-            into_last = K.c * R_face[last - 1] - K.b * (R_mid[last] - R_mid[last - 1])
+            into_last = K.c * R_face[last - 1] - spread(R_mid[last] - R_mid[last - 1], K.b)
         face_drop = drop + 0.5 * (g[last] - g[0])
         _correct(h, R, last, K, out, drop, scratch)
         h[last], R[last] = corrected(
@@ -84,7 +85,7 @@ def _correct(h, R, cells, K, flux_in, before, scratch):  # type: ignore[no-untyp
     """New layers of the first cells; ``flux_in`` and the drop ``before`` lie above cell 0."""
     h_mid, R_mid, R_face, g = scratch[0], scratch[1], scratch[2], scratch[3]
     for i in range(cells):
-        flux_out = K.c * R_face[i] - K.b * (R_mid[i + 1] - R_mid[i])
+        flux_out = K.c * R_face[i] - spread(R_mid[i + 1] - R_mid[i], K.b)
         drop = (h_mid[i] - h_mid[i + 1]) - K.s
         face_drop = drop + 0.5 * (g[i] - g[i + 1])
         h[i], R[i] = corrected(h[i], R[i], R_mid[i], flux_in, flux_out, face_drop, before - drop, K)

@@ -17,7 +17,7 @@ from __future__ import annotations
 import numba
 import numpy as np
 
-from bcre_ca.exchange import eroded, settle
+from bcre_ca.exchange import carried, eroded, settle
 
 TILE_FROM = 250_000
 """Cells from which tiles pay: h and R of this length fill a cache of 4 MB."""
@@ -44,7 +44,7 @@ def _sweep(h, R, cells, K, flux_in, before):  # type: ignore[no-untyped-def]
     _, b, q, k, s, a, m, u, dry = K
     for i in range(cells):
         R_i = R[i]
-        flux_out = q * R_i - b * R[i + 1]
+        flux_out = carried(R_i, R[i + 1], q, b)
         drop = (h[i] - h[i + 1]) - s
         exchange = eroded(R_i, drop, before - drop, k, a, m, u)
         h[i], R[i] = settle(h[i] - exchange, R_i + ((flux_in - flux_out) + exchange), dry)
@@ -71,7 +71,7 @@ def open_ends(h, R, K, steps, account):  # type: ignore[no-untyped-def]
     for _ in range(steps):
         into_last, above = 0.0, 0.0
         if last > 0:
-            into_last = K.q * R[last - 1] - K.b * R[last]
+            into_last = carried(R[last - 1], R[last], K.q, K.b)
             above = (h[last - 1] - h[last]) - K.s
             _sweep(h, R, last, K, K.c - K.c, (h[0] - h[1]) - K.s)
         _leave(h, R, last, K, into_last, above, account)
@@ -97,7 +97,7 @@ def _tiled(h, R, K, steps, account):  # type: ignore[no-untyped-def]
                     carried_flux[t] = 0.0
                     carried_drop[t] = (h[0] - h[1]) - K.s
                 if upper < lower:
-                    flux_out = K.q * R[lower - 1] - K.b * R[lower]
+                    flux_out = carried(R[lower - 1], R[lower], K.q, K.b)
                     drop = (h[lower - 1] - h[lower]) - K.s
                     sweep = lower - upper
                     _sweep(h[upper:], R[upper:], sweep, K, carried_flux[t], carried_drop[t])
@@ -113,8 +113,8 @@ def periodic(h, R, K, steps, fall):  # type: ignore[no-untyped-def]
     last = h.size - 1
     for _ in range(steps):
         R_first, R_last, h_last = R[0], R[last], h[last]
-        into_first = K.q * R_last - K.b * R_first
-        into_last = K.q * R[last - 1] - K.b * R_last if last > 0 else into_first
+        into_first = carried(R_last, R_first, K.q, K.b)
+        into_last = carried(R[last - 1], R_last, K.q, K.b) if last > 0 else into_first
         drop_last = (h_last - (h[0] - fall)) - K.s
         drop_before = (h[last - 1] - h_last) - K.s if last > 0 else drop_last
         bend_last = drop_before - drop_last

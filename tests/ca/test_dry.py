@@ -1,0 +1,76 @@
+"""The cut-off: a layer thinner than ``dry`` after a step comes to rest."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bcre_ca import Pile, Rule, advance, step
+
+
+@settings(max_examples=25)
+@given(data=st.data(), cells=st.integers(1, 30))
+def test_step_moves_what_is_thinner_than_the_cut_off_into_the_surface(
+    form, rules, piles, bound, data, cells
+):
+    rule = data.draw(rules(form))
+    h, R = data.draw(piles(cells, rule))
+    dt = min(0.5 * bound(h, R, rule, form.ends), 10.0)
+    exact = replace(rule, dt=dt, dry=0.0)
+    dry = data.draw(st.sampled_from([0.1, 0.5, 2.0])) * (R.max() + 1e-6)
+    flowing_h, flowing_R, outflow = step(h, R, exact, form.ends)
+    new_h, new_R, new_outflow = step(h, R, replace(exact, dry=dry), form.ends)
+    thin = flowing_R < dry
+    assert np.array_equal(new_R, np.where(thin, 0.0, flowing_R))
+    assert np.array_equal(new_h, flowing_h + np.where(thin, flowing_R, 0.0))
+    assert new_outflow == outflow
+
+
+@settings(max_examples=20)
+@given(seed=st.integers(0, 1000), steps=st.integers(1, 100), exponent=st.floats(-12, -2))
+@pytest.mark.parametrize("scheme", ["upwind", "calibrated"])
+def test_without_exchange_no_more_comes_to_rest_than_the_cut_off_per_cell_and_step(
+    scheme, seed, steps, exponent
+):
+    dry = 10**exponent
+    rule = Rule(v=0.5, D=0.1, gamma=0.0, Sc=0.5, d=1.0, dt=0.8, scheme=scheme)
+    rng = np.random.default_rng(seed)
+    R = np.where(rng.random(80) < 0.5, 0.0, 10 ** rng.uniform(-14, 0, 80))
+    start = Pile(np.zeros(80), R)
+    exact = advance(start, replace(rule, dry=1e-300), steps, "open")
+    cut = advance(start, replace(rule, dry=dry), steps, "open")
+    missing = exact.R - cut.R
+    assert missing.min() >= -1e-15
+    assert cut.h.min() >= 0
+    assert cut.h.max() <= steps * dry * (1 + 1e-12)
+    assert missing.sum() + exact.outflow - cut.outflow == pytest.approx(cut.h.sum(), abs=1e-13)
+
+
+@pytest.mark.parametrize("dry", [1e-8, 1e-5])
+def test_figure_2_with_the_cut_off_differs_by_no_more_than_that_per_cell_and_step(dry):
+    """Below repose no disturbance grows."""
+    rule = Rule(v=2.5, D=0.1, gamma=0.01, Sc=0.5, d=1.0, dt=0.2)
+    x = np.arange(100) + 0.5
+    start = Pile(0.48 * (100 - x), np.exp(-(((x - 20) / 4) ** 2)))
+    exact, cut = advance(start, rule, 100), advance(start, replace(rule, dry=dry), 100)
+    difference = np.abs(exact.R - cut.R).sum() + np.abs(exact.h - cut.h).sum()
+    assert 0 < difference <= 2 * 100 * 100 * dry
+    assert np.abs(exact.h - cut.h).max() <= 100 * dry
+
+
+def test_pulse_with_a_cut_off_comes_to_rest_and_then_costs_nothing():
+    """A thousand million further steps are none where all is dry."""
+    rule = Rule(v=0.5, D=0.1, gamma=0.2, Sc=0.5, d=1.0, dt=0.8, dry=1e-6)
+    x = np.arange(300) + 0.5
+    start = Pile(0.3 * (300 - x), np.exp(-(((x - 50) / 4) ** 2)))
+    at_rest = advance(start, rule, 2000)
+    assert not at_rest.R.any()
+    assert at_rest.outflow == 0
+    later = advance(at_rest, rule, 10**9)
+    assert later.h.tobytes() == at_rest.h.tobytes()
+    assert math.fsum(later.h) == pytest.approx(math.fsum(start.h) + math.fsum(start.R), rel=1e-14)
+    never = advance(start, replace(rule, dry=0.0), 2000)
+    assert never.R.any()

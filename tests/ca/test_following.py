@@ -1,0 +1,211 @@
+"""A step that follows its bounds, and a fixed one that is outgrown."""
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bcre_ca import MARGIN, Pile, Rule, advance, evolve, frames, largest_stable_step, step
+from bcre_ca.kernels import BLOCK, driver, follow, march, stable_step
+
+FIGURE_1 = Rule(v=0.1, D=0.1, gamma=0.01, Sc=0.5, d=1.0, dt=1.0)
+OPTIONS = {
+    "upwind": {"scheme": "upwind"},
+    "calibrated": {"scheme": "calibrated"},
+    "limited, all terms": {"scheme": "limited", "kappa": 0.02, "v_up": 1.5, "dry": 1e-30},
+}
+
+
+def figure_1():
+    x = np.arange(100) + 0.5
+    return Pile(3.7 * (100 - x), np.exp(-(((x - 85) / 3) ** 2)))
+
+
+@pytest.mark.parametrize("name", OPTIONS)
+@pytest.mark.parametrize("d", [0.7, 2.640695197746448])
+def test_followed_steps_are_the_fixed_ones_to_the_bit_where_the_bound_stays(name, d):
+    """Layers so thin that the surface stays as it is. Of the second d, d**2 is not d d."""
+    rule = Rule(0.1, 0.1, 0.01, 0.5, d, 1.0, **OPTIONS[name])
+    h = -1 - 2.5 * d * np.arange(300)
+    R = 1e-25 * np.random.default_rng(5).uniform(0, 1, 300)
+    R[:150] = 0.0
+    dt = MARGIN * stable_step(h, R, rule, "open")
+    fixed = h.copy(), R.copy()
+    outflow = march(*fixed, replace(rule, dt=dt), 3 * BLOCK, "open")
+    done = follow(h, R, rule, 1e6, 3, MARGIN, "open")
+    assert (done.steps, done.lowered, done.raised, done.redone) == (3 * BLOCK, 0, 0, 0)
+    assert done.left == pytest.approx(1e6 - 3 * BLOCK * dt, rel=1e-12)
+    assert done.outflow == outflow > 0
+    assert h.tobytes() == fixed[0].tobytes()
+    assert R.tobytes() == fixed[1].tobytes()
+
+
+def test_last_steps_before_a_time_are_equal_and_hit_it():
+    start = figure_1()
+    (followed,) = frames(start, FIGURE_1, [80.0])
+    fixed = advance(start, replace(FIGURE_1, dt=80.0 / 30), 30)
+    assert followed.steps == 30
+    assert followed.h.tobytes() == fixed.h.tobytes()
+    assert followed.R.tobytes() == fixed.R.tobytes()
+    assert followed.outflow == fixed.outflow
+
+
+@pytest.mark.parametrize("name", OPTIONS)
+def test_figure_1_lowers_its_step_as_it_grows_and_stays_under_the_bound_throughout(name):
+    """Between frames closer than a block all steps are equal."""
+    rule = replace(FIGURE_1, **OPTIONS[name])
+    start = figure_1()
+    previous = start
+    for pile in frames(start, rule, np.linspace(4, 800, 200)):
+        dt = (pile.t - previous.t) / (pile.steps - previous.steps)
+        assert pile.steps - previous.steps <= BLOCK
+        assert dt <= largest_stable_step(pile, rule, "open") * (1 + 1e-12)
+        assert pile.R.min() >= 0
+        previous = pile
+    (whole,) = frames(start, rule, [800.0])
+    assert whole.lowered > 5
+    assert whole.mass(1.0) + whole.outflow == pytest.approx(start.mass(1.0), rel=1e-12)
+
+
+def test_step_grows_again_when_the_avalanche_has_left():
+    (whole,) = frames(figure_1(), FIGURE_1, [6000.0])
+    assert whole.raised > 5
+    bound = largest_stable_step(whole, FIGURE_1, "open")
+    assert bound == pytest.approx(1 / 0.3, rel=0.01)
+
+
+OUTGROWING = Rule(v=0.1, D=0.1, gamma=0.2, Sc=0.5, d=1.0, dt=1.0)
+
+
+def outgrowing():
+    """So steep that R grows by a tenth of a million within the first block."""
+    x = np.arange(200) + 0.5
+    return Pile(1.5 * (200 - x), 1e-3 * np.exp(-(((x - 150) / 3) ** 2)))
+
+
+def test_block_that_is_outgrown_is_taken_again_and_harms_nothing():
+    start = outgrowing()
+    assert MARGIN * largest_stable_step(start, OUTGROWING, "open") > 2.6
+    (end,) = frames(start, OUTGROWING, [150.0])
+    assert end.redone > 0
+    assert end.mass(1.0) + end.outflow == pytest.approx(start.mass(1.0), rel=1e-13)
+    assert end.R.min() >= 0
+    fine = advance(start, replace(OUTGROWING, dt=0.02), 7_500)
+    assert np.abs(end.h - fine.h).sum() < 0.1 * np.abs(fine.h - start.h).sum()
+
+
+def test_block_taken_again_leaves_no_trace_of_the_first_try():
+    """What is kept is the march in the shorter steps, to the bit; outflow included."""
+    start = outgrowing()
+    start = replace(start, R=start.R + 1e-6)
+    h, R = start.h.copy(), start.R.copy()
+    done = follow(h, R, OUTGROWING, 1e6, 1, MARGIN, "open")
+    assert done.redone > 0
+    first = MARGIN * largest_stable_step(start, OUTGROWING, "open")
+    dt = first / 2**done.redone
+    fixed = start.h.copy(), start.R.copy()
+    outflow = march(*fixed, replace(OUTGROWING, dt=dt), BLOCK, "open")
+    assert h.tobytes() == fixed[0].tobytes()
+    assert R.tobytes() == fixed[1].tobytes()
+    assert done.outflow == outflow
+    assert done.left == pytest.approx(1e6 - BLOCK * dt, rel=1e-14)
+    end = Pile(h, R)
+    assert dt <= largest_stable_step(end, OUTGROWING, "open")
+    twice = start.h.copy(), start.R.copy()
+    march(*twice, replace(OUTGROWING, dt=2 * dt), BLOCK, "open")
+    assert not 2 * dt <= largest_stable_step(Pile(*twice), OUTGROWING, "open")
+
+
+positive = st.floats(1e-3, 1e3)
+
+
+@given(span=positive, bound=positive, calibrating=st.one_of(st.just(0.0), positive))
+def test_plan_is_a_whole_number_of_steps_under_the_bound_or_a_block(span, bound, calibrating):
+    steps, dt, wanted = driver._plan.py_func(span, bound, MARGIN, calibrating)
+    assert 1 <= steps <= BLOCK
+    assert dt <= bound * (1 + 1e-12)
+    assert steps * dt <= span * (1 + 1e-12)
+    assert wanted == (calibrating if MARGIN * bound < calibrating <= bound else MARGIN * bound)
+    if steps < BLOCK:
+        assert steps * dt == pytest.approx(span, rel=1e-12)
+
+
+@given(span=positive, bound=positive, part=st.floats(0.01, 1.0))
+def test_plan_takes_at_least_the_calibrating_step_wherever_the_span_allows(span, bound, part):
+    calibrating = part * bound
+    steps, dt, _ = driver._plan.py_func(span, bound, MARGIN, calibrating)
+    possible = any(
+        calibrating * (1 + 1e-9) <= span / n <= bound * (1 - 1e-9)
+        for n in range(max(math.floor(span / bound), 1), math.ceil(span / calibrating) + 1)
+    )
+    if possible or steps == BLOCK:
+        assert calibrating * (1 - 1e-12) <= dt <= bound * (1 + 1e-12)
+
+
+@pytest.mark.parametrize("until", [3.8, 20.0, 40.0])
+def test_calibrated_step_lies_between_its_calibrating_step_and_the_bound(until):
+    """Figure 2 at d = 1: 0.368 and 0.385, above four fifths of the bound."""
+    rule = Rule(2.5, 0.1, 0.01, 0.5, 1.0, 1.0, scheme="calibrated")
+    x = np.arange(100) + 0.5
+    start = Pile(0.52 * (100 - x), 1e-3 * np.exp(-(((x - 20) / 4) ** 2)))
+    bound = largest_stable_step(start, rule, "open")
+    assert MARGIN * bound < rule.calibrating_step() < bound
+    (end,) = frames(start, rule, [until])
+    assert rule.calibrating_step() <= end.t / end.steps <= bound
+    assert replace(rule, dt=end.t / end.steps).effective_diffusion() == pytest.approx(0.1)
+
+
+def first_passed(start, rule, most, bound):
+    """Time and cell after the first plain step at whose end dt exceeds the bound."""
+    h, R = start.h, start.R
+    for taken in range(1, most + 1):
+        h, R, _ = step(h, R, rule)
+        if rule.dt > bound(h, R, rule, "open") * (1 + 1e-12):
+            return taken * rule.dt, int(np.argmax(R)), float(R.max())
+    raise AssertionError("the bound was not passed")
+
+
+@pytest.mark.parametrize("name", ["upwind", "limited, all terms"])
+def test_fixed_step_that_is_outgrown_names_the_first_time_the_cell_and_the_bound(name, bound):
+    rule = replace(FIGURE_1, **(OPTIONS[name] | {"v_up": math.inf, "dt": 0.9}))
+    time, cell, largest_R = first_passed(figure_1(), rule, 400, bound)
+    told = (
+        rf"^the avalanche outgrew the step at t = {time:.6g}, in cell {cell}: dt = 0\.9 cannot be "
+        rf"stable: gamma R dt/d must not exceed 1 where R = {largest_R:.6g}; the largest stable "
+        r"step is 0\.8"
+    )
+    steps = round(time / 0.9) + 20
+    with pytest.raises(FloatingPointError, match=told):
+        evolve(figure_1().h, figure_1().R, rule, steps)
+    with pytest.raises(FloatingPointError, match=told):
+        list(frames(figure_1(), rule, [0.9 * steps], step=0.9))
+    before = round(time / 0.9) - 1
+    evolve(figure_1().h, figure_1().R, rule, before)
+
+
+def test_batch_of_which_one_scene_is_outgrown_says_when(bound):
+    rule = replace(FIGURE_1, dt=0.9)
+    time, cell, _ = first_passed(figure_1(), rule, 400, bound)
+    start, still = figure_1(), np.zeros(100)
+    h, R = np.stack([start.h, start.h]), np.stack([still, start.R])
+    with pytest.raises(FloatingPointError, match=rf"at t = {time:.6g}, in cell {cell}:"):
+        evolve(h, R, rule, round(time / 0.9) + 20)
+
+
+def test_march_whose_layers_are_no_longer_finite_says_when_the_bound_was_passed(bound):
+    rule = replace(FIGURE_1, dt=1.5)
+    time, cell, _ = first_passed(figure_1(), rule, 400, bound)
+    with pytest.raises(FloatingPointError, match=rf"at t = {time:.6g}, in cell {cell}:"):
+        advance(figure_1(), rule, 2000)
+
+
+def test_counts_add_up_over_frames():
+    piles = list(frames(figure_1(), FIGURE_1, [100.0, 300.0, 900.0]))
+    for earlier, later in pairwise(piles):
+        assert later.steps > earlier.steps
+        assert later.lowered >= earlier.lowered
+        assert later.redone >= earlier.redone
