@@ -235,7 +235,7 @@ def _on_frozen_slope(scene: Scene, model: Model) -> Trial:
         K = replace(rule, dt=(time - before.t) / steps).coefficients()
         cell_steps += steps * before.R.size
         h, R = before.h.copy(), before.R.copy()
-        frozen_march(h, R, drop - K.s, K.c, K.b, K.k, steps, periodic)
+        frozen_march(h, R, drop - K.s, K.c, K.b or 0.0, K.k, steps, periodic)
         piles.append(bcre_ca.Pile(h, R, time, 0.0, before.steps + steps))
     record = _record(scene, changed, piles)
     return Trial(record, cell_steps, cell_steps * _cost(changed, rule, single=False))
@@ -294,7 +294,8 @@ def _cost(scene: Scene, rule: bcre_ca.Rule, single: bool) -> float:
         record.seconds(scheme, cells, 1.0, terms, frames=0)
         for scheme, terms in ((rule.scheme, closures), ("upwind", "none"))
     )
-    own *= _ratio(specialisation.DRY) if rule.dry > 0 else 1.0
+    own *= _ratio("dry") if rule.dry > 0 else 1.0
+    own /= _ratio("D") if rule.D == 0 and scene.material.D > 0 else 1.0
     return own / plain / (_ratio(specialisation.SINGLE) if single else 1.0)
 
 

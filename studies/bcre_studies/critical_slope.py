@@ -60,18 +60,13 @@ def calibrated_rule(material: bcre_pde.Material, d: float) -> bcre_ca.Rule:
     return replace(rule, dt=usual if usual > least else (least + bound) / 2)
 
 
-def diffusion_left(rule: bcre_ca.Rule) -> float:
-    """What the rule's step lets R diffuse by itself: D, or what calibrating leaves of it."""
-    return rule.coefficients().b * rule.d**2 / rule.dt
-
-
 def measure_sd_of(rule: bcre_ca.Rule) -> float:
     """Sd - Sc of an upwind or calibrated rule with diffusion left.
 
     Released in one cell. What sigma_abs leaves out is of order d^2/(16 D' t1 t2) with the weighted
     diffusion D' = sqrt(D (D + v d)): below 1e-4 of gamma (Sd - Sc) at the times taken here.
     """
-    D, d, dt = diffusion_left(rule), rule.d, rule.dt
+    D, d, dt = rule.diffusion_left(), rule.d, rule.dt
     expected = second_critical_excess(rule.v, D, rule.gamma, d)
     diffusion = math.sqrt(D * (D + rule.v * d))
     late = max(8 / (rule.gamma * expected), 200 * d**2 / diffusion)

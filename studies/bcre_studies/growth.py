@@ -70,7 +70,8 @@ def _steady_layer(rule: bcre_ca.Rule, cells: int) -> Array:
     A sweep begins in cell 0 or ends there, which therefore holds one flux f more than the others
     between two sweeps, or one less: f = c/(1 - q) downhill, c/(1 - b) uphill.
     """
-    c, b, q = rule.coefficients()[:3]
+    folded = rule.coefficients()
+    c, b, q = folded.c, folded.b or 0.0, folded.q
     layer = np.ones(cells)
     if rule.order == "right" and q < 1:
         layer[0] += c / (1 - q)

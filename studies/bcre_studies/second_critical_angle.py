@@ -37,7 +37,6 @@ from bcre_studies.climb import Bracket, climb, effective_problem, pulse_scene, t
 from bcre_studies.compare import to_error
 from bcre_studies.critical_slope import (
     calibrated_rule,
-    diffusion_left,
     effective_for_growth,
     measure_sd_automaton,
     measure_sd_of,
@@ -123,7 +122,7 @@ def calibrated_row(v: float, D: float, gamma: float, d: float) -> dict[str, Any]
     """Sd - Sc of the calibrated automaton, and of BCRE; "effective" has what Sd sees of D_eff."""
     material = bcre_pde.Material(v, D, gamma, Sc=0.5)
     rule = calibrated_rule(material, d)
-    left = replace(material, D=diffusion_left(rule))
+    left = replace(material, D=rule.diffusion_left())
     return {
         **_head(SD_CALIBRATED, material, d),
         "automaton d/4": shown(measure_sd_of(calibrated_rule(material, d / 4))),

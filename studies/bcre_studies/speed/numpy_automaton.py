@@ -59,11 +59,12 @@ def march(
     if rule != bcre_ca.Rule(rule.v, rule.D, rule.gamma, rule.Sc, rule.d, rule.dt, rule.sign):
         raise ValueError(f"{rule}: must be the paper's synchronous rule and nothing more")
     fold = rule.coefficients()
+    b = fold.b or 0.0
     drop = rule.Sc * rule.d * h.size
     flux, exchange, scratch = np.zeros_like(h), np.zeros_like(h), np.zeros_like(h)
     for _ in range(steps):
         np.multiply(fold.q, R, out=flux)
-        np.multiply(fold.b, R[1:], out=scratch[1:])
+        np.multiply(b, R[1:], out=scratch[1:])
         np.subtract(flux[:-1], scratch[1:], out=flux[:-1])
 
         np.subtract(h[:-1], h[1:], out=exchange[:-1])
@@ -72,7 +73,7 @@ def march(
         exchange *= R
 
         if ends == "periodic":
-            flux[-1] -= fold.b * R[0]
+            flux[-1] -= b * R[0]
             exchange[-1] = R[-1] * (fold.k * ((h[-1] - (h[0] - drop)) - fold.s))
             entering = flux[-1]
         else:
