@@ -23,12 +23,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from bcre_studies.advise import Advice, Effort, Question, advise
+from bcre_studies.advise import Advice, Effort, advise
 from bcre_studies.candidate import MODELS, SCHEMES
 from bcre_studies.claim import Claim, Verdict
 from bcre_studies.compare import significant
 from bcre_studies.deviation import deviation, uncertainty
 from bcre_studies.pilot import run_model
+from bcre_studies.question import Question
 from bcre_studies.random_scenes import random_scene
 from bcre_studies.report import style
 from bcre_studies.scene import Scene, built_in_names, load

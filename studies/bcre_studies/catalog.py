@@ -25,6 +25,7 @@ STUDIES = (
     "scene_needs",
     "stability",
     "hard_cases",
+    "advice",
 )
 
 

@@ -105,7 +105,7 @@ def advise(
 ) -> None:
     """Which model and cells answer SCENE to a tolerance at the least cost; by short pilots."""
     from bcre_studies.advice_text import answer
-    from bcre_studies.advise import Question, seconds_of
+    from bcre_studies.question import Question, seconds_of
     from bcre_studies.scene import load
 
     seconds = None if budget is None else seconds_of(budget)

@@ -10,12 +10,13 @@ from click.testing import CliRunner
 
 from bcre_studies import advice as study
 from bcre_studies.advice_text import answer
-from bcre_studies.advise import Effort, Question, advise, seconds_of
+from bcre_studies.advise import Effort, advise
 from bcre_studies.candidate import SAFETY, Candidate, Pilot
 from bcre_studies.cli import app
 from bcre_studies.closed_forms import closed_form
 from bcre_studies.deviation import OBSERVABLES, deviation, posed, uncertainty
 from bcre_studies.pilot import Allowance, PilotError, reference, run_model, sees_start
+from bcre_studies.question import Question, seconds_of
 from bcre_studies.random_scenes import random_scene
 from bcre_studies.run import run_scene
 from bcre_studies.scene import load

@@ -18,7 +18,7 @@ import itertools
 import math
 import statistics
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +26,7 @@ import pandas as pd
 
 import bcre_pde
 from bcre_studies.compare import significant
+from bcre_studies.profiles import Array
 from bcre_studies.report.files import REPORTS, replace_text
 from bcre_studies.scene import Scene
 from bcre_studies.simulate import frame_times, problem_of, run_automaton
@@ -73,14 +74,27 @@ class Costs:
         ValueError
             for a model or closures that the table does not have.
         """
-        rows = self.table[(self.table["model"] == model) & (self.table["closures"] == closures)]
-        if rows.empty:
+        try:
+            grids, rates, frame_s = self._rows[model, closures]
+        except KeyError:
             raise ValueError(
                 f"model = {model!r}, closures = {closures!r}: must be one of {MODELS} and one of "
                 f"{CLOSURES}"
+            ) from None
+        rate = float(np.exp(np.interp(np.log(cells), grids, rates)))
+        return frames * frame_s + cells * steps * rate
+
+    @cached_property
+    def _rows(self) -> dict[tuple[str, str], tuple[Array, Array, float]]:
+        """By model and closures: logarithms of cells and of seconds a cell and step; frame_s."""
+        return {
+            key: (
+                np.log(rows["cells"].to_numpy(float)),
+                np.log(rows["cell_step_s"].to_numpy()),
+                float(rows["frame_s"].iloc[0]),
             )
-        rate = np.interp(np.log(cells), np.log(rows["cells"]), np.log(rows["cell_step_s"]))
-        return float(frames * rows["frame_s"].iloc[0] + cells * steps * math.exp(rate))
+            for key, rows in self.table.groupby(["model", "closures"])
+        }
 
 
 def closures_of(scene: Scene) -> str:
