@@ -58,6 +58,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 TITLE = "What does a scene need?"
+READS_RECORD = True
 TOLERANCES = {"1": 0.01, "5": 0.05}
 WHY = (
     "1 % is about what a measurement of a pile can tell, 5 % the width of a line in the paper's "
