@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 TITLE = "Does the advised model reach the tolerance, at the least cost?"
+READS_RECORD = True  # the costs
 SCENES = 60
 TOLERANCE = 0.05
 FRAMES = 3
