@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from bcre_studies.kills import QUICK, Copy, Series, kill_in_turn
+from bcre_studies.robustness.kills import QUICK, Copy, Series, kill_in_turn
 
 BAD = ["half", "lost", "workers_alive", "damaged", "redone"]
 

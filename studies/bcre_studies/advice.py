@@ -1,10 +1,10 @@
 r"""Does what ``bcre advise`` advises reach the tolerance, and is it the cheapest that does?
 
-The advice rests on pilots (:mod:`bcre_studies.pilot`) and costs; here it is put to the test at a
+The advice rests on pilots (``pilot``) and costs; here it is put to the test at a
 tolerance of 5 % against BCRE, refined until its own error is a twentieth of that: in R, relative L1
 at the end, and in h, L1 of its change relative to that.
 
-* **Random scenes** (:mod:`bcre_studies.random_scenes`): the advised model is run on the advised
+* **Random scenes** (``random_scenes``): the advised model is run on the advised
   cells. A scene whose BCRE does not come that far on 1600 cells is unresolved and counted apart;
   one that does, but for which nothing was advised, is declined and counts as not met.
 * **Foretold**: on the same scenes the automaton's pilots end at 100 cells, and every scheme that
@@ -23,14 +23,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from bcre_studies.advise import Advice, Effort, advise
-from bcre_studies.candidate import MODELS, SCHEMES
+from bcre_studies.advising.advise import Advice, Effort, advise
+from bcre_studies.advising.candidate import MODELS, SCHEMES
+from bcre_studies.advising.deviation import deviation, uncertainty
+from bcre_studies.advising.pilot import run_model
+from bcre_studies.advising.question import Question
+from bcre_studies.advising.random_scenes import random_scene
 from bcre_studies.claim import Claim, Verdict
 from bcre_studies.compare import significant
-from bcre_studies.deviation import deviation, uncertainty
-from bcre_studies.pilot import run_model
-from bcre_studies.question import Question
-from bcre_studies.random_scenes import random_scene
 from bcre_studies.report import style
 from bcre_studies.scene import Scene, built_in_names, load
 from bcre_studies.simulate import Run, frame_times

@@ -104,8 +104,8 @@ def advise(
     out: Path | None,
 ) -> None:
     """Which model and cells answer SCENE to a tolerance at the least cost; by short pilots."""
-    from bcre_studies.advice_text import answer
-    from bcre_studies.question import Question, seconds_of
+    from bcre_studies.advising.advice_text import answer
+    from bcre_studies.advising.question import Question, seconds_of
     from bcre_studies.scene import load
 
     seconds = None if budget is None else seconds_of(budget)

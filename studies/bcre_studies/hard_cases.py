@@ -1,6 +1,6 @@
 r"""Hard scenes in both models: what happens, and what a model that fails says of it.
 
-Every scene (:mod:`bcre_studies.hard_scenes`) runs in the automaton with the schemes upwind,
+Every scene (``hard_scenes``) runs in the automaton with the schemes upwind,
 calibrated and limited, with the step that follows its bounds and where named with a fixed one, and
 in BCRE with its default method on the same cells. It ends in one of
 
@@ -35,12 +35,13 @@ import pandas as pd
 import bcre_ca
 import bcre_pde
 from bcre_ca.rule import Scheme
-from bcre_studies import adaptive_step, faults, scarp_grids
 from bcre_studies.claim import Claim, Verdict
 from bcre_studies.compare import significant
-from bcre_studies.hard_scenes import HardScene, long_run, scenes
+from bcre_studies.measuring import adaptive_step, scarp_grids
+from bcre_studies.measuring.hard_scenes import HardScene, long_run, scenes
 from bcre_studies.profiles import Array
 from bcre_studies.report import style
+from bcre_studies.robustness import faults
 from bcre_studies.work import each
 
 if TYPE_CHECKING:

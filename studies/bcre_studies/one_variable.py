@@ -1,7 +1,7 @@
 r"""Control: an automaton of the height alone, through the same four comparisons.
 
 Its rule (Bak, Tang and Wiesenfeld 1988, for a continuous height) moves sand downhill wherever the
-slope exceeds Sc, and nothing else:
+slope exceeds Sc, and nothing else (``height_only``):
 
     f(i) = (1/4) max(0, h(i) - h(i+1) - Sc d)        h(i) += f(i-1) - f(i)
 
@@ -14,14 +14,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numba
 import numpy as np
 import pandas as pd
 
 import bcre_pde
 from bcre_studies.claim import Claim, Verdict
 from bcre_studies.compare import significant
-from bcre_studies.outcome import slope
+from bcre_studies.measuring.height_only import settle
+from bcre_studies.measuring.outcome import slope
 from bcre_studies.profiles import Array
 from bcre_studies.report import style
 from bcre_studies.scene import Scene, load
@@ -32,9 +32,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 TITLE = "Control: which properties need the second layer?"
-SHARE = 0.25
-SETTLED = 1e-9
-"""The control has settled when no cell sheds more than this in a step (a length)."""
 EXCESSES = (0.5, 1.5, 3.2)
 PULSES = (0.0, 1.0)
 CELLS = 200
@@ -45,40 +42,6 @@ TOLERANCE = 0.05
 WHY = "of the slope's excess at the start: a twentieth of what there is to lose"
 
 Row = dict[str, Any]
-
-
-@numba.njit(cache=True)
-def settle(h, fall, periodic):  # type: ignore[no-untyped-def]
-    """The first of :func:`settled`, the height alone."""
-    return settled(h, fall, periodic)[0]
-
-
-@numba.njit(cache=True)
-def settled(h, fall, periodic):  # type: ignore[no-untyped-def]
-    """The height h, shape (N,), once no cell sheds more than :data:`SETTLED`, and after how many
-    steps.
-
-    Parameters
-    ----------
-    h: height at the cell centres.
-    fall: Sc d, the largest fall from cell to cell that stands.
-    periodic: joined ends; otherwise a closed top and a last cell that is held.
-    """
-    h = h.copy()
-    last = h.size - 1
-    shed = np.empty(h.size)
-    steps = 0
-    while True:
-        for i in range(last):
-            shed[i] = SHARE * max(h[i] - h[i + 1] - fall, 0.0)
-        shed[last] = SHARE * max(h[last] - h[0] + fall * last, 0.0) if periodic else 0.0
-        if shed.max() <= SETTLED:
-            return h, steps
-        steps += 1
-        for i in range(last):
-            h[i] += shed[i - 1] - shed[i] if i > 0 or periodic else -shed[i]
-        if periodic:
-            h[last] += shed[last - 1] - shed[last]
 
 
 def run() -> dict[str, pd.DataFrame]:

@@ -37,7 +37,7 @@ from bcre_studies.compare import (
     sample,
     significant,
 )
-from bcre_studies.observe import scarps
+from bcre_studies.measuring.observe import scarps
 from bcre_studies.profiles import Array
 from bcre_studies.report import style
 from bcre_studies.scene import Scene, load

@@ -16,7 +16,7 @@ from scipy.stats import bootstrap
 import bcre_pde
 from bcre_studies.claim import Claim, Verdict
 from bcre_studies.compare import significant
-from bcre_studies.observe import roughness
+from bcre_studies.measuring.observe import roughness
 from bcre_studies.report import style
 from bcre_studies.scene import load
 from bcre_studies.simulate import effective_problem_of, problem_of, run_automaton

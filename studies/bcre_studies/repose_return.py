@@ -30,13 +30,17 @@ import bcre_pde
 import bcre_pde.theory
 from bcre_studies.claim import Claim, Verdict, worst
 from bcre_studies.compare import SHARE
-from bcre_studies.measured import Measured, numbers, shown
-from bcre_studies.outcome import slope, spent
-from bcre_studies.repeated_pulses import SOLVER_TOLERANCE, slopes_of_automaton, slopes_of_pde
+from bcre_studies.measuring.measured import Measured, numbers, shown
+from bcre_studies.measuring.outcome import slope, spent
+from bcre_studies.measuring.repeated_pulses import (
+    SOLVER_TOLERANCE,
+    slopes_of_automaton,
+    slopes_of_pde,
+)
+from bcre_studies.measuring.thin_pulse import slope_after_thin_pulse
 from bcre_studies.report import style
 from bcre_studies.scene import Scene, load
 from bcre_studies.simulate import effective_problem_of, problem_of, run_automaton
-from bcre_studies.thin_pulse import slope_after_thin_pulse
 from bcre_studies.work import each
 
 if TYPE_CHECKING:

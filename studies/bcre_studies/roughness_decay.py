@@ -27,12 +27,12 @@ import pandas as pd
 import bcre_ca.theory
 import bcre_pde
 import bcre_pde.theory
-from bcre_studies import observe
 from bcre_studies.claim import Claim, Verdict, worst
 from bcre_studies.compare import significant
+from bcre_studies.measuring import observe
+from bcre_studies.measuring.scaled import compare_each
 from bcre_studies.profiles import NOISE_WAVES, Array
 from bcre_studies.report import style
-from bcre_studies.scaled import compare_each
 from bcre_studies.scene import Scene, load
 from bcre_studies.simulate import Run, as_run, problem_of, rule_of, run_automaton
 from bcre_studies.work import each

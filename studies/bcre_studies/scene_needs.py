@@ -32,7 +32,9 @@ import numpy as np
 import pandas as pd
 from matplotlib.colors import BoundaryNorm, ListedColormap
 
-from bcre_studies.ablation import (
+from bcre_studies.claim import Claim, Verdict
+from bcre_studies.compare import significant
+from bcre_studies.measuring.ablation import (
     DOUBLE,
     DRY,
     GAMMA,
@@ -44,12 +46,10 @@ from bcre_studies.ablation import (
     D,
     V,
 )
-from bcre_studies.claim import Claim, Verdict
-from bcre_studies.compare import significant
-from bcre_studies.observables import NAMES, posed, scale, value
+from bcre_studies.measuring.observables import NAMES, posed, scale, value
+from bcre_studies.measuring.smallest import Trials, dispensable, smallest, together, without
 from bcre_studies.report import style
 from bcre_studies.scene import built_in_names, load
-from bcre_studies.smallest import Trials, dispensable, smallest, together, without
 from bcre_studies.speed import specialisation
 from bcre_studies.work import each
 

@@ -33,17 +33,17 @@ import bcre_ca.theory
 import bcre_pde
 import bcre_pde.theory
 from bcre_studies.claim import Claim, Verdict, verdict_of, within, worst
-from bcre_studies.climb import Bracket, climb, effective_problem, pulse_scene, threshold
 from bcre_studies.compare import to_error
-from bcre_studies.critical_slope import (
+from bcre_studies.measuring.climb import Bracket, climb, effective_problem, pulse_scene, threshold
+from bcre_studies.measuring.critical_slope import (
     calibrated_rule,
     effective_for_growth,
     measure_sd_automaton,
     measure_sd_of,
     measure_sd_pde,
 )
-from bcre_studies.measured import Measured, numbers, shown
-from bcre_studies.outcome import Outcome
+from bcre_studies.measuring.measured import Measured, numbers, shown
+from bcre_studies.measuring.outcome import Outcome
 from bcre_studies.report import style
 from bcre_studies.work import each
 

@@ -1,7 +1,7 @@
 r"""Where a step stops being stable: measured by stepping, and predicted by closed forms.
 
 A small periodic pile under a uniform layer on the repose line is disturbed by noise and stepped; it
-is unstable where the disturbance grows (:mod:`bcre_studies.growth`). This is done over two planes
+is unstable where the disturbance grows (``growth``). This is done over two planes
 of numbers per step,
 
     drift and spread    (v dt/d, D dt/d^2) without exchange
@@ -10,7 +10,7 @@ of numbers per step,
 for every order and scheme of the automaton, and for the explicit methods of BCRE with fixed steps,
 on 40 x 40 points; and along 40 rays, each a material whose step is lengthened, the boundary is
 found by bisection. The prediction is von Neumann's, |G| <= 1 for every wave: for the automaton
-:mod:`bcre_studies.amplification`, where for the synchronous upwind and calibrated rules it is
+``amplification``, where for the synchronous upwind and calibrated rules it is
 also the condition that no weight is negative; for BCRE :func:`bcre_pde.theory.stable`, the
 stability polynomial of the method over the spectrum of the differences in space.
 
@@ -39,10 +39,10 @@ from bcre_ca import kernels
 from bcre_pde import theory
 from bcre_pde.explicit import ExplicitMethod
 from bcre_pde.solve import Method
-from bcre_studies.amplification import Numbers, Variant, rule_with, stable
 from bcre_studies.claim import Claim, Verdict
 from bcre_studies.compare import significant
-from bcre_studies.growth import PDE, SIZE, STEPS, automaton_grows, noise, pde_grows
+from bcre_studies.measuring.amplification import Numbers, Variant, rule_with, stable
+from bcre_studies.measuring.growth import PDE, SIZE, STEPS, automaton_grows, noise, pde_grows
 from bcre_studies.report import style
 from bcre_studies.work import each
 

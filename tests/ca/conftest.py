@@ -61,9 +61,9 @@ class Form(NamedTuple):
         return self.scheme in ("right", "left")
 
     def options(self, kappa, v_up, dry):
-        """The options of a rule of this form."""
-        values = {"kappa": kappa, "v_up": v_up, "dry": dry}
-        chosen = {term: values[term] for term in self.terms}
+        """The parameters of a rule of this form that decide on its kernel, D only where it is 0."""
+        values = {"kappa": kappa, "v_up": v_up, "dry": dry, "no D": 0.0}
+        chosen = {{"no D": "D"}.get(term, term): values[term] for term in self.terms}
         return chosen | ({"order": self.scheme} if self.in_place else {"scheme": self.scheme})
 
 
@@ -71,16 +71,16 @@ class Form(NamedTuple):
 FORMS = (
     Form("upwind", (), "open"),
     Form("upwind", (), "periodic"),
-    Form("upwind", ("kappa", "dry"), "open"),
+    Form("upwind", ("no D", "kappa", "dry"), "open"),
     Form("upwind", ("v_up", "dry"), "periodic"),
     Form("calibrated", (), "open"),
-    Form("calibrated", ("kappa", "v_up", "dry"), "open"),
+    Form("calibrated", ("no D", "kappa", "v_up", "dry"), "open"),
     Form("calibrated", ("kappa",), "periodic"),
-    Form("limited", (), "open"),
+    Form("limited", ("no D",), "open"),
     Form("limited", ("kappa", "v_up", "dry"), "open"),
     Form("limited", ("kappa",), "periodic"),
     Form("right", ("dry",), "periodic"),
-    Form("left", ("dry",), "open"),
+    Form("left", ("no D", "dry"), "open"),
 )
 
 
@@ -109,13 +109,12 @@ def _rules(draw, form):
     )
     return Rule(
         v=draw(coefficient),
-        D=draw(coefficient),
         gamma=draw(st.one_of(st.just(0.0), st.floats(1e-3, 1))),
         Sc=draw(st.floats(0, 2)),
         d=draw(st.floats(0.1, 3)),
         dt=1.0,
         sign=draw(st.sampled_from(["consistent", "printed"])),
-        **options,
+        **({"D": draw(st.floats(1e-3, 3))} | options),
     )
 
 

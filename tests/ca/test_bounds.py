@@ -12,15 +12,15 @@ from bcre_ca import Pile, Rule, advance, largest_stable_step, step
 
 
 @settings(max_examples=8)
-@given(data=st.data(), cells=st.integers(1, 60), steps=st.integers(1, 400))
+@given(data=st.data(), cells=st.integers(1, 60), steps=st.integers(1, 200))
 def test_mass_with_what_left_is_conserved_to_1e_13(form, rules, piles, bound, data, cells, steps):
     rule = data.draw(rules(form))
     pile = Pile(*data.draw(piles(cells, rule)))
     scale = rule.d * (np.abs(pile.h).sum() + pile.R.sum())
     mass = pile.mass(rule.d)
-    for _ in range(0, steps, 25):
+    for _ in range(steps):
         dt = min(0.9 * bound(pile.h, pile.R, rule, form.ends), 10.0)
-        pile = advance(pile, replace(rule, dt=dt), 25, form.ends)
+        pile = advance(pile, replace(rule, dt=dt), 1, form.ends)
         if np.abs(pile.R).max() > 1e6 * scale:
             break
         scale = max(scale, rule.d * (np.abs(pile.h).sum() + np.abs(pile.R).sum()))

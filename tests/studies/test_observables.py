@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from bcre_studies import observables as o
+from bcre_studies.measuring import observables as o
 from bcre_studies.scene import load
 
 OPEN, CLOSED = load("figure3"), load("rough_slope")

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import bcre_pde
-from bcre_studies import observe, scaled
 from bcre_studies.claim import Verdict
+from bcre_studies.measuring import observe, scaled
 from bcre_studies.scene import load
 from bcre_studies.simulate import Run
 

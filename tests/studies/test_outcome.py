@@ -5,7 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from bcre_studies.outcome import Outcome, growth_rate, outcome, reached_the_top, slope, spent
+from bcre_studies.measuring.outcome import (
+    Outcome,
+    growth_rate,
+    outcome,
+    reached_the_top,
+    slope,
+    spent,
+)
 from bcre_studies.scene import load
 from bcre_studies.simulate import Run
 

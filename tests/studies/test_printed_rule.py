@@ -10,7 +10,7 @@ import pytest
 import bcre_ca
 from bcre_studies import printed_rule as study
 from bcre_studies.claim import Verdict
-from bcre_studies.outcome import slope
+from bcre_studies.measuring.outcome import slope
 from bcre_studies.scene import load
 from bcre_studies.simulate import rule_of
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bcre_studies.random_scenes import random_scene
+from bcre_studies.advising.random_scenes import random_scene
 from bcre_studies.scene import Scene
 
 FIRST = {"v": 0.1424, "length": 108.6}

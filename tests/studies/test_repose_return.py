@@ -6,11 +6,11 @@ import pytest
 import bcre_pde
 from bcre_studies import repose_return
 from bcre_studies.claim import Verdict
-from bcre_studies.outcome import slope
-from bcre_studies.repeated_pulses import slopes_of_automaton, slopes_of_pde
+from bcre_studies.measuring.outcome import slope
+from bcre_studies.measuring.repeated_pulses import slopes_of_automaton, slopes_of_pde
+from bcre_studies.measuring.thin_pulse import slope_after_thin_pulse
 from bcre_studies.repose_return import FAST, SLOW, closed_form, effective_of, scene_of
 from bcre_studies.simulate import problem_of, run_automaton
-from bcre_studies.thin_pulse import slope_after_thin_pulse
 
 
 def final_slopes(scene, cells=100):

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import bcre_pde
-from bcre_studies import observe, roughness_decay
+from bcre_studies import roughness_decay
 from bcre_studies.claim import Verdict
+from bcre_studies.measuring import observe
 from bcre_studies.scene import load
 from bcre_studies.simulate import as_run, problem_of, run_automaton
 

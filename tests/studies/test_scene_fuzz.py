@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import bcre_pde
-from bcre_studies import fuzz, memory
+from bcre_studies import memory
+from bcre_studies.robustness import fuzz
 from bcre_studies.run import require_runnable, run_scene
 from bcre_studies.scene import SceneError, load
 from bcre_studies.simulate import problem_of, rule_of

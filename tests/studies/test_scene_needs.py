@@ -7,9 +7,10 @@ import pandas as pd
 import pytest
 
 import bcre_ca
-from bcre_studies import ablation, observables, scene_needs, smallest
-from bcre_studies.ablation import Model, Refused
+from bcre_studies import scene_needs
 from bcre_studies.claim import Verdict
+from bcre_studies.measuring import ablation, observables, smallest
+from bcre_studies.measuring.ablation import Model, Refused
 from bcre_studies.scene import load
 from bcre_studies.simulate import rule_of, run_automaton
 

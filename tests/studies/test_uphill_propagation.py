@@ -9,8 +9,9 @@ import pytest
 import bcre_ca.theory
 import bcre_pde
 import bcre_pde.theory
-from bcre_studies import observe, uphill_propagation
+from bcre_studies import uphill_propagation
 from bcre_studies.claim import Verdict
+from bcre_studies.measuring import observe
 from bcre_studies.scene import load
 from bcre_studies.simulate import as_run, effective_problem_of, problem_of, run_automaton
 

@@ -20,7 +20,7 @@ import bcre_pde
 from bcre_pde import exact
 from bcre_pde.solve import Method
 from bcre_studies.compare import sample
-from bcre_studies.observe import edge
+from bcre_studies.measuring.observe import edge
 from bcre_studies.profiles import Array
 from bcre_studies.scene import Scene, load
 from bcre_studies.simulate import as_run, problem_of, rule_of

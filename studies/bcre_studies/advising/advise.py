@@ -1,8 +1,8 @@
 r"""Which model, on which cells, answers a scene to a tolerance at the least cost, or in a time.
 
-Every model is piloted (:mod:`bcre_studies.pilot`); from what the pilots foretell
-(:mod:`bcre_studies.candidate`) follows on how many cells it does what is asked, and which one does
-it best (:mod:`bcre_studies.options`). Errors are relative to BCRE, converged, with the material of
+Every model is piloted (``pilot``); from what the pilots foretell
+(``candidate``) follows on how many cells it does what is asked, and which one does
+it best (``options``). Errors are relative to BCRE, converged, with the material of
 the scene. The step follows its bounds ("auto"): the upwind rule is the more accurate the longer it
 is, (v d/2)(1 - v dt/d), the calibrated one needs a long one, and a shorter one only costs more.
 """
@@ -14,11 +14,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import bcre_pde
-from bcre_studies.candidate import MODELS, SAFETY, SCHEMES, Candidate
-from bcre_studies.closed_forms import ClosedForm, closed_form
-from bcre_studies.deviation import deviation
-from bcre_studies.options import PRECISE, Option, confirmed, predicted_seconds
-from bcre_studies.pilot import (
+from bcre_studies.advising.candidate import MODELS, SAFETY, SCHEMES, Candidate
+from bcre_studies.advising.closed_forms import ClosedForm, closed_form
+from bcre_studies.advising.deviation import deviation
+from bcre_studies.advising.options import PRECISE, Option, confirmed, predicted_seconds
+from bcre_studies.advising.pilot import (
     COARSEST,
     FINEST,
     REFERENCE_SHARE,
@@ -30,7 +30,7 @@ from bcre_studies.pilot import (
     sees_start,
     warm_up,
 )
-from bcre_studies.question import Question
+from bcre_studies.advising.question import Question
 from bcre_studies.simulate import problem_of
 from bcre_studies.speed.costs import Costs, closures_of
 

@@ -15,10 +15,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bcre_studies.candidate import FARTHEST, HALF, Candidate, Pilot
-from bcre_studies.deviation import deviation
-from bcre_studies.pilot import COARSEST, Allowance, PilotError, Reference
-from bcre_studies.question import Question
+from bcre_studies.advising.candidate import FARTHEST, HALF, Candidate, Pilot
+from bcre_studies.advising.deviation import deviation
+from bcre_studies.advising.pilot import COARSEST, Allowance, PilotError, Reference
+from bcre_studies.advising.question import Question
 
 PRECISE = 1e-3
 """Where a time is given, an error as small as this is as good as none."""

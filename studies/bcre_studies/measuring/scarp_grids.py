@@ -16,7 +16,7 @@ import pandas as pd
 import bcre_pde
 from bcre_studies.claim import Claim, Verdict
 from bcre_studies.compare import significant
-from bcre_studies.observe import scarps
+from bcre_studies.measuring.observe import scarps
 from bcre_studies.report import style
 from bcre_studies.scene import load
 from bcre_studies.simulate import as_run, problem_of, run_automaton

@@ -3,7 +3,7 @@
 * ``R``: relative L1 difference of R at the end, at the centres of the run's own cells.
 * ``h``: that of what h has changed by since the start.
 * ``slope``, ``roughness``, ``front``, ``eroded``, ``reach``, ``top``: see
-  :mod:`bcre_studies.observables`, each over a scale that says what there is to see of it.
+  ``observables``, each over a scale that says what there is to see of it.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ import math
 import numpy as np
 
 from bcre_pde import grid_convergence_index
-from bcre_studies import observables
 from bcre_studies.compare import sample
-from bcre_studies.observables import Record
+from bcre_studies.measuring import observables
+from bcre_studies.measuring.observables import Record
 from bcre_studies.profiles import Array
 from bcre_studies.scene import Scene
 from bcre_studies.simulate import Run

@@ -14,8 +14,8 @@ from dataclasses import dataclass, field
 from typing import get_args
 
 from bcre_ca.rule import Scheme
-from bcre_studies import ablation
-from bcre_studies.ablation import (
+from bcre_studies.measuring import ablation
+from bcre_studies.measuring.ablation import (
     CELLS,
     DOUBLE,
     DRY,
@@ -29,7 +29,7 @@ from bcre_studies.ablation import (
     Trial,
     V,
 )
-from bcre_studies.observables import change, posed
+from bcre_studies.measuring.observables import change, posed
 from bcre_studies.scene import Scene
 
 COARSER = (1, 2, 4, 8)

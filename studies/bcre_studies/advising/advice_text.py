@@ -11,14 +11,14 @@ from rich.console import Console
 from rich.markup import escape
 from rich.progress import Progress
 
-from bcre_studies.advise import Advice, Effort, advise
+from bcre_studies.advising.advise import Advice, Effort, advise
+from bcre_studies.advising.options import Option
+from bcre_studies.advising.pilot import with_model
+from bcre_studies.advising.question import Question
+from bcre_studies.advising.scene_text import scene_text
 from bcre_studies.compare import significant
-from bcre_studies.options import Option
-from bcre_studies.pilot import with_model
-from bcre_studies.question import Question
 from bcre_studies.report.files import replace_text, require_writable
 from bcre_studies.run import COARSEST, require_runnable
-from bcre_studies.scene_text import scene_text
 from bcre_studies.speed.costs import recorded
 
 NAMES = {

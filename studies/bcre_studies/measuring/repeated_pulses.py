@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import bcre_ca
 import bcre_pde
-from bcre_studies.outcome import slope
+from bcre_studies.measuring.outcome import slope
 from bcre_studies.profiles import Array
 from bcre_studies.scene import Scene
 from bcre_studies.simulate import rule_of

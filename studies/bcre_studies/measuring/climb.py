@@ -2,7 +2,7 @@ r"""Does a pulse near the foot climb to the top of figure 1's slope, and from wh
 
 The scene is figure 1 (v = 0.1, D = 0.1, gamma = 0.01, Sc = 0.5, L = 100) with a pulse of any
 amplitude, width 3, at x = 85 on any incline S0, until t = 3000. The threshold of a pulse is the
-lowest S0 from which on the outcome is not ``no`` (:mod:`bcre_studies.outcome`).
+lowest S0 from which on the outcome is not ``no`` (``outcome``).
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import bcre_pde
-from bcre_studies.outcome import Outcome, decided, outcome
+from bcre_studies.measuring.outcome import Outcome, decided, outcome
 from bcre_studies.scene import Scene, load
 from bcre_studies.simulate import (
     as_run,

@@ -1,7 +1,7 @@
 """Faults tried on purpose: what is done, what should come of it, and what does.
 
-Spoilt scene files (:mod:`bcre_studies.fuzz`), a store and folders that are damaged or full, runs
-that are killed (:mod:`bcre_studies.kills`), two at once, one worker or two. All of it happens in
+Spoilt scene files (``fuzz``), a store and folders that are damaged or full, runs
+that are killed (``kills``), two at once, one worker or two. All of it happens in
 temporary folders, and what is told does not depend on the machine or the time.
 """
 
@@ -19,9 +19,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from bcre_studies import fuzz
-from bcre_studies.kills import Copy, Series, kill_in_turn
 from bcre_studies.report import pickles
+from bcre_studies.robustness import fuzz
+from bcre_studies.robustness.kills import Copy, Series, kill_in_turn
 from bcre_studies.run import require_runnable, run_scene
 from bcre_studies.scene import SceneError, load
 from bcre_studies.simulate import rule_of

@@ -23,7 +23,7 @@ import bcre_pde
 from bcre_ca import kernels
 from bcre_pde import fluxes
 from bcre_pde.explicit import ExplicitMethod, tableau, weighted_sum
-from bcre_studies.amplification import Numbers, Variant, rule_with
+from bcre_studies.measuring.amplification import Numbers, Variant, rule_with
 from bcre_studies.profiles import Array
 
 SIZE = 1e-8

@@ -13,12 +13,12 @@ from typing import Any
 import pandas as pd
 from rich.progress import track
 
-from bcre_studies.advise import Effort, advise
+from bcre_studies.advising.advise import Effort, advise
+from bcre_studies.advising.options import Option
+from bcre_studies.advising.pilot import FINEST, run_model
+from bcre_studies.advising.question import Question
+from bcre_studies.advising.random_scenes import random_scene
 from bcre_studies.compare import significant
-from bcre_studies.options import Option
-from bcre_studies.pilot import FINEST, run_model
-from bcre_studies.question import Question
-from bcre_studies.random_scenes import random_scene
 from bcre_studies.speed.costs import recorded
 
 SCENES = 30

@@ -26,10 +26,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from bcre_studies.observe import edge
-from bcre_studies.observe import roughness as root_mean_square
-from bcre_studies.outcome import SPENT, reached_the_top
-from bcre_studies.outcome import slope as fitted_slope
+from bcre_studies.measuring.observe import edge
+from bcre_studies.measuring.observe import roughness as root_mean_square
+from bcre_studies.measuring.outcome import SPENT, reached_the_top
+from bcre_studies.measuring.outcome import slope as fitted_slope
 from bcre_studies.profiles import Array
 from bcre_studies.scene import Scene
 
@@ -122,7 +122,7 @@ def front(record: Record) -> Array:
     """x of the downhill edge of the rolling layer at every time after the start, (T - 1,); lengths.
 
     There R is :data:`FRONT` of its largest at the time. Where it is so much in the last cell, or
-    nothing is left of the layer (:data:`bcre_studies.outcome.SPENT`), the front is at the foot.
+    nothing is left of the layer (``outcome.SPENT``), the front is at the foot.
     """
     assert record.R is not None
     foot = record.scene.domain.length
@@ -158,7 +158,7 @@ def reach(record: Record) -> float:
 def top(record: Record) -> float:
     """1 where the avalanche has run to the top by the end, else 0.
 
-    See :func:`bcre_studies.outcome.reached_the_top`. A slope no higher than repose but for rounding
+    See ``outcome.reached_the_top``. A slope no higher than repose but for rounding
     has nothing to bring down.
     """
     repose = record.scene.material.Sc * record.x

@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from bcre_studies.outcome import slope
+from bcre_studies.measuring.outcome import slope
 from bcre_studies.scene import Scene
 
 

@@ -16,8 +16,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import bcre_pde
-from bcre_studies.candidate import SCHEMES, Candidate, Pilot
-from bcre_studies.deviation import deviation, uncertainty
+from bcre_studies.advising.candidate import SCHEMES, Candidate, Pilot
+from bcre_studies.advising.deviation import deviation, uncertainty
 from bcre_studies.profiles import Array, Gaussian
 from bcre_studies.scene import Scene
 from bcre_studies.simulate import Run, as_run, problem_of, rule_of, run_automaton

@@ -23,8 +23,8 @@ import bcre_ca
 import bcre_pde
 from bcre_ca.theory import max_stable_step, second_critical_excess
 from bcre_pde.theory import second_critical_slope
-from bcre_studies.measured import Measured
-from bcre_studies.outcome import growth_rate
+from bcre_studies.measuring.measured import Measured
+from bcre_studies.measuring.outcome import growth_rate
 from bcre_studies.profiles import Array
 
 TRACE = 1e-150

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from bcre_studies.deviation import posed
+from bcre_studies.advising.deviation import posed
 from bcre_studies.scene import Scene
 from bcre_studies.simulate import frame_times
 
@@ -35,7 +35,7 @@ class Question:
     Parameters
     ----------
     tolerance: largest relative error of the observable, between 0 and 1.
-    observable: one of :data:`bcre_studies.deviation.OBSERVABLES`.
+    observable: one of ``deviation.OBSERVABLES``.
     budget: seconds per frame; given, the most accurate model that holds it is wanted.
     frames: as of ``bcre run``: times from 0 to the end, frames - 1 of them to be computed.
 

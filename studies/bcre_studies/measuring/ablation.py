@@ -6,7 +6,7 @@ The full model is the automaton as the scene stands. Left out of it can be
     kappa             the curvature that the rule adds of its own, kappa_eff: calibrated away, while
                       D is set to the full model's D_eff, so that nothing else changes
     second layer      R is put on h, which the automaton of the height alone brings to rest
-                      (``one_variable``)
+                      (``height_only``)
     nonlinearity      the exchange sees the slope of the start, E = gamma R (S(t = 0) - Sc)
     half of the cells d is doubled, dt is not
     half of the steps dt is doubled (of the largest stable step the scene's "auto" takes 0.8)
@@ -37,8 +37,8 @@ import numpy as np
 import bcre_ca
 from bcre_ca.kernels.driver import BLOCK, SEES
 from bcre_ca.rule import Ends, Scheme
-from bcre_studies.observables import Record
-from bcre_studies.one_variable import settled
+from bcre_studies.measuring.height_only import settled
+from bcre_studies.measuring.observables import Record
 from bcre_studies.profiles import Array
 from bcre_studies.scene import Scene
 from bcre_studies.simulate import frame_times, rule_of

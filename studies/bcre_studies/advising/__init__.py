@@ -1,0 +1,1 @@
+"""What ``bcre advise`` does: questions, pilots, candidates, the answer and its trial."""

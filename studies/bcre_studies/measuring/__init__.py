@@ -1,0 +1,1 @@
+"""What studies measure with: observed quantities, outcomes, closed forms beside them."""

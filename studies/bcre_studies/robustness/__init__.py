@@ -1,0 +1,1 @@
+"""Faults made on purpose: spoilt scene files, damaged stores, runs that are killed."""
