@@ -39,7 +39,8 @@ print(peak() - before)
 )
 def test_estimate_is_within_a_factor_of_two_of_the_measured_peak(tmp_path, model, frames, changes):
     command = [sys.executable, "-c", MEASURE, model, str(frames), *changes]
-    ended = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
+    for _ in ("the compiler takes more memory than the run: once so that all is compiled", "so"):
+        ended = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
     scene = load("figure2", changes)
     needed = memory.estimate(scene, model, frames, run_module._finest(scene))
     measured = int(ended.stdout)
