@@ -33,37 +33,36 @@ def test_step_moves_what_is_thinner_than_the_cut_off_into_the_surface(
 @given(seed=st.integers(0, 1000), steps=st.integers(1, 100), exponent=st.floats(-12, -2))
 @pytest.mark.parametrize("scheme", ["upwind", "calibrated"])
 def test_without_exchange_no_more_comes_to_rest_than_the_cut_off_per_cell_and_step(
-    scheme, seed, steps, exponent
+    plain_march, scheme, seed, steps, exponent
 ):
     dry = 10**exponent
     rule = Rule(v=0.5, D=0.1, gamma=0.0, Sc=0.5, d=1.0, dt=0.8, scheme=scheme)
     rng = np.random.default_rng(seed)
     R = np.where(rng.random(80) < 0.5, 0.0, 10 ** rng.uniform(-14, 0, 80))
-    start = Pile(np.zeros(80), R)
-    exact = advance(start, replace(rule, dry=1e-300), steps, "open")
-    cut = advance(start, replace(rule, dry=dry), steps, "open")
-    missing = exact.R - cut.R
+    _, exact_R, exact_outflow = plain_march(np.zeros(80), R, rule, steps, "open")
+    h, cut_R, outflow = plain_march(np.zeros(80), R, replace(rule, dry=dry), steps, "open")
+    missing = exact_R - cut_R
     assert missing.min() >= -1e-15
-    assert cut.h.min() >= 0
-    assert cut.h.max() <= steps * dry * (1 + 1e-12)
-    assert missing.sum() + exact.outflow - cut.outflow == pytest.approx(cut.h.sum(), abs=1e-13)
+    assert h.min() >= 0
+    assert h.max() <= steps * dry * (1 + 1e-12)
+    assert missing.sum() + exact_outflow - outflow == pytest.approx(h.sum(), abs=1e-13)
 
 
 @pytest.mark.parametrize("dry", [1e-8, 1e-5])
-def test_figure_2_with_the_cut_off_differs_by_no_more_than_that_per_cell_and_step(dry):
+def test_figure_2_with_the_cut_off_differs_by_no_more_than_that_per_cell_and_step(plain_march, dry):
     """Below repose no disturbance grows."""
     rule = Rule(v=2.5, D=0.1, gamma=0.01, Sc=0.5, d=1.0, dt=0.2)
     x = np.arange(100) + 0.5
-    start = Pile(0.48 * (100 - x), np.exp(-(((x - 20) / 4) ** 2)))
-    exact, cut = advance(start, rule, 100), advance(start, replace(rule, dry=dry), 100)
-    difference = np.abs(exact.R - cut.R).sum() + np.abs(exact.h - cut.h).sum()
-    assert 0 < difference <= 2 * 100 * 100 * dry
-    assert np.abs(exact.h - cut.h).max() <= 100 * dry
+    start = 0.48 * (100 - x), np.exp(-(((x - 20) / 4) ** 2))
+    exact_h, exact_R, _ = plain_march(*start, rule, 100, "open")
+    h, R, _ = plain_march(*start, replace(rule, dry=dry), 100, "open")
+    assert 0 < np.abs(exact_R - R).sum() + np.abs(exact_h - h).sum() <= 2 * 100 * 100 * dry
+    assert np.abs(exact_h - h).max() <= 100 * dry
 
 
 def test_pulse_with_a_cut_off_comes_to_rest_and_then_costs_nothing():
     """A thousand million further steps are none where all is dry."""
-    rule = Rule(v=0.5, D=0.1, gamma=0.2, Sc=0.5, d=1.0, dt=0.8, dry=1e-6)
+    rule = Rule(v=0.5, D=0.0, gamma=0.2, Sc=0.5, d=1.0, dt=0.8, kappa=1e-6, dry=1e-6)
     x = np.arange(300) + 0.5
     start = Pile(0.3 * (300 - x), np.exp(-(((x - 50) / 4) ** 2)))
     at_rest = advance(start, rule, 2000)
@@ -72,5 +71,4 @@ def test_pulse_with_a_cut_off_comes_to_rest_and_then_costs_nothing():
     later = advance(at_rest, rule, 10**9)
     assert later.h.tobytes() == at_rest.h.tobytes()
     assert math.fsum(later.h) == pytest.approx(math.fsum(start.h) + math.fsum(start.R), rel=1e-14)
-    never = advance(start, replace(rule, dry=0.0), 2000)
-    assert never.R.any()
+    assert advance(start, replace(rule, dry=1e-300), 2000).R.any()

@@ -165,9 +165,7 @@ def test_printed_rule_in_single_precision_equals_its_plain_steps_to_the_bit(plai
     h, R = in_single(rough(300, RULE))
     *expected, lost = plain_march(h, R, RULE, 70, ends)
     assert expected[0].dtype == expected[1].dtype == np.float32
-    found = evolve(h, R, RULE, 70, ends)
     outflow = march(h, R, RULE, 70, ends)
-    assert_same(found, expected, 0.0, 0.0)
     assert_same((h, R), expected, outflow, lost)
 
 
