@@ -61,7 +61,7 @@ def test_last_steps_before_a_time_are_equal_and_hit_it():
 
 
 @pytest.mark.parametrize(
-    ("name", "lowered"), [("upwind", 10), ("calibrated", 10), ("limited, all terms", 1)]
+    ("name", "lowered"), [("upwind", 6), ("calibrated", 6), ("limited, all terms", 1)]
 )
 def test_figure_1_lowers_its_step_as_it_grows_and_stays_under_the_bound(name, lowered):
     """Between frames closer than a block all steps are equal. Without D little climbs."""
