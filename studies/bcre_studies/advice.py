@@ -35,6 +35,7 @@ from bcre_studies.report import style
 from bcre_studies.scene import Scene, built_in_names, load
 from bcre_studies.simulate import Run, frame_times
 from bcre_studies.speed.costs import closures_of, recorded
+from bcre_studies.speed.record import read
 from bcre_studies.work import each
 
 if TYPE_CHECKING:
@@ -48,6 +49,7 @@ FRAMES = 3
 MET = 0.95
 WHY_MET = "one scene in twenty may be missed, as with any 95 % statement"
 DEARER = 2.0
+IN_TIME = 0.9
 WHY_DEARER = "a factor of 2 is what the predicted times themselves are good for"
 TRUTH = 0.05
 """The true solution's own error may be this part of the tolerance."""
@@ -268,10 +270,12 @@ def _least(scene: Scene, model: str, true: Truth) -> tuple[int, int] | None:
 def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     """Whether what is advised, foretold and cheapest is so."""
     table = tables["comparison"]
+    times = read().get("advice")
     return [
         *(_met(table[table["observable"] == name], name) for name in OBSERVED),
         _foretold(tables["extrapolated"]),
         _cheapest(tables["cheapest"]),
+        *([] if times is None else [_in_time(times)]),
     ]
 
 
@@ -328,6 +332,26 @@ def _cheapest(table: pd.DataFrame) -> Claim:
         f"costs up to {judged['dearer_in_steps'].max():.2g} times the least. Told to be "
         f"unresolved: {', '.join(silent)}",
         tolerance=f"{DEARER:g}: {WHY_DEARER}",
+    )
+
+
+def _in_time(times: pd.DataFrame) -> Claim:
+    """Hits of the predicted times in the committed record of speed."""
+    options = times[times["pilots"] == "all"]
+    advised = options[options["advised"]]
+    foretold = times[times["pilots"] == "coarse"]
+    share = float(advised["hit"].mean())
+    return Claim(
+        name="predicted time",
+        statement=f"The predicted time of the advised model is within a factor of 2 of the "
+        f"measured one in at least {IN_TIME:.0%} of random scenes.",
+        verdict=Verdict.AGREE if share >= IN_TIME else Verdict.DISAGREE,
+        evidence=f"{int(advised['hit'].sum())} of {len(advised)} scenes ({share:.0%}) in the "
+        f"record of speed; of all models with pilots as fine as they are advised "
+        f"{int(options['hit'].sum())} of {len(options)}, of those foretold from coarse pilots "
+        f"{int(foretold['hit'].sum())} of {len(foretold)}",
+        tolerance="a factor of 2: runs of a tenth of a millisecond differ by as much from one to "
+        "the next",
     )
 
 

@@ -22,6 +22,8 @@ STUDIES = (
     "printed_rule",
     "one_variable",
     "order_of_accuracy",
+    "speed_error",
+    "scaling",
     "scene_needs",
     "stability",
     "hard_cases",

@@ -31,7 +31,8 @@ DIGITS = 3
 
 def measure_record() -> Tables:
     """Everything, some minutes: for a machine that does nothing else."""
-    from bcre_studies.speed import costs, first_use, ratios, sizes
+    from bcre_studies.advising.advice_times import time_hits
+    from bcre_studies.speed import costs, first_use, ratios, sizes, specialisation
 
     raced = race(contest.own() + contest.rivals(), tuple(contest.scenes()))
     return {
@@ -43,6 +44,8 @@ def measure_record() -> Tables:
         "budget": sizes.budget(),
         "first_use": first_use.measure(),
         "costs": costs.measure(),
+        "specialisation": specialisation.specialisation_gains(),
+        "advice": time_hits(),
     }
 
 
