@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bcre_ca import Rule, evolve, step
+from bcre_ca import Rule, evolve, kernels, step
 from bcre_ca.kernels import BLOCK, march, sweep
 
 RULE = Rule(v=0.3, D=0.1, gamma=0.02, Sc=0.6, d=0.7, dt=0.4)
@@ -143,6 +143,17 @@ def test_batch_equals_its_scenes_one_by_one(rule, ends, scenes, cells, seed):
     for layers in zip(h, R, strict=True):
         lost += march(*layers, rule, 70, ends)
     assert_same(together, (h, R), outflow, lost)
+
+
+def test_batch_keeps_an_account_of_outflow_for_each_scene():
+    layers = [rough(50, RULE), rough(50, RULE), rough(50, RULE)]
+    h, R = (np.stack(same) for same in zip(*layers, strict=True))
+    R *= np.array([[1.0], [0.5], [0.0]])
+    alone = [march(h[i].copy(), R[i].copy(), RULE, 70, "open") for i in range(3)]
+    accounts = np.zeros((3, 2))
+    kernels._batch(h, R, RULE.coefficients(), 70, accounts, None, None, None)
+    assert accounts[:, 0].tolist() == alone
+    assert alone[0] > alone[1] > alone[2] == 0
 
 
 def test_evolve_takes_a_batch_and_leaves_its_inputs_alone():
