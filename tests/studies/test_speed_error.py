@@ -77,15 +77,16 @@ def test_the_shorter_time_wins_and_what_is_not_reached_loses(changes, expected):
 
 def test_evidence_counts_wins_and_gives_both_times():
     evidence = claims(FASTEST | {OURS: [0.001, 2, 6]})["efficiency"].evidence
-    assert "the automaton is faster in 2 of 4 cases" in evidence
-    assert "s at 10 % (1 ms against 5 s)" in evidence
-    assert "s at 1 %: 6 s against 5 s" in evidence
-    assert "s at 0.1 %: at least 9 s against 5 s" in evidence
+    assert "the faster in 2 of 4 pairs" in evidence
+    assert "at 10 % in 1 of 1 scenes, by 5e+03 to 5e+03 times, and at 0.1 % in none" in evidence
+    assert "BCRE's solver is the faster in 2: at 1 % by 1.2 to 1.2 times, " in evidence
+    assert "0.1 % by 1.8 to 1.8 times, or more where" in evidence
+    assert "never" not in evidence
 
 
 def test_automaton_that_gets_worse_never_arrives():
-    tables = {"errors": FEWER, "recorded_reach": seconds({PDE: [5]}, bound=float("inf"))}
-    assert "s at 10 %: never against 5 s" in study.judge(tables)[0].evidence
+    tables = {"errors": FEWER, "recorded_reach": seconds({PDE: [5]}, bound=float("nan"))}
+    assert "the automaton never does in s, where" in study.judge(tables)[0].evidence
 
 
 @pytest.mark.parametrize(

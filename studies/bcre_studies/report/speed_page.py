@@ -90,6 +90,7 @@ def _seconds_by_error(reach: pd.DataFrame) -> pd.DataFrame:
 
 def _told(row: pd.Series) -> str:
     """Seconds, the ratio to the paper's rule, and a mark for the winner."""
-    ratio = f"{row['to_automaton']:.2g}"
-    against = f"{'<= ' if row['at_least'] else ''}{ratio} x" if row["to_automaton"] > 0 else "-"
-    return f"{row['seconds']:.2g} s ({against}){' *' if row['winner'] else ''}"
+    told = f"{row['seconds']:.2g} s"
+    if pd.notna(row["to_automaton"]):
+        told += f" ({'<= ' if row['at_least'] else ''}{row['to_automaton']:.2g} x)"
+    return f"{told} *" if row["winner"] else told

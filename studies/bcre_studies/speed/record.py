@@ -6,7 +6,6 @@ machine at hand, which is measured in less than a minute and belongs to no repos
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Any
 
@@ -104,7 +103,8 @@ def reach(raced: pd.DataFrame) -> pd.DataFrame:
     """Seconds to reach an error of R: the cheapest grid measured that has no more.
 
     ``to_automaton`` is the time against that of the paper's rule, ``automaton_s``; where that was
-    fine enough on no grid tried, the latter is a lower bound (``at_least``).
+    fine enough on no grid tried, the latter is a lower bound (``at_least``), or missing where the
+    error grows as cells get finer.
     """
     rows: list[dict[str, Any]] = []
     for (scene, target), group in _with_targets(raced):
@@ -122,7 +122,7 @@ def reach(raced: pd.DataFrame) -> pd.DataFrame:
                 "contender": best["contender"],
                 "cells": best["cells"],
                 "seconds": best["median_s"],
-                "to_automaton": best["median_s"] / seconds,
+                "to_automaton": None if seconds is None else best["median_s"] / seconds,
                 "automaton_s": seconds,
                 "at_least": at_least,
                 "winner": best["median_s"] == min(other["median_s"] for other in found),
@@ -140,18 +140,18 @@ def _with_targets(raced: pd.DataFrame) -> list[tuple[tuple[str, float], pd.DataF
     ]
 
 
-def _seconds_to(rungs: pd.DataFrame, target: float) -> tuple[float, bool]:
+def _seconds_to(rungs: pd.DataFrame, target: float) -> tuple[float | None, bool]:
     """Seconds of a first-order scheme to an error, and whether they are but a lower bound.
 
-    Half the error takes twice the cells at least, and they twice the steps. Infinite where the
-    error grows as cells get finer.
+    Half the error takes twice the cells at least, and they twice the steps. None where the error
+    grows as cells get finer.
     """
     best = cheapest(rungs, target, "median_s")
     if best is not None:
         return float(best["median_s"]), False
     coarse, fine = rungs.iloc[-2], rungs.iloc[-1]
     if fine["error_R"] >= coarse["error_R"]:
-        return math.inf, True
+        return None, True
     return float(fine["median_s"] * (fine["error_R"] / target) ** 2), True
 
 
