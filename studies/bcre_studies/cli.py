@@ -70,6 +70,12 @@ def run(
     loaded = load(scene, assignments)  # what is refused here need not wait for the solvers
     from bcre_studies.run import run_scene, write_run
 
+    if model != "pde" and loaded.material.kappa > 0 and loaded.automaton.scheme == "upwind":
+        click.echo(
+            "note: the paper's rule has no curvature term; the automaton runs without "
+            f"kappa = {loaded.material.kappa!r} (automaton.scheme calibrated or limited takes it)",
+            err=True,
+        )
     summary = write_run(run_scene(loaded, model, frames), folder)
     for name, numbers in summary.items():
         facts = ", ".join(f"{key} {_short(value)}" for key, value in numbers.items())
@@ -195,7 +201,7 @@ def main() -> None:
     except (click.Abort, KeyboardInterrupt):
         click.echo("bcre: interrupted; every file written before is whole", err=True)
         sys.exit(130)
-    except (ValueError, OSError) as error:
+    except (ValueError, OSError, ArithmeticError) as error:
         _refuse(str(error))
     except MemoryError as error:
         _refuse(f"not enough memory: {error}")

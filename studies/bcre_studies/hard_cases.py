@@ -210,7 +210,7 @@ def _finite(tables: dict[str, pd.DataFrame]) -> Claim:
     missing = sum(cell is None for cell in cells)
     return Claim(
         name="finite",
-        statement="No NaN or infinity in any table.",
+        statement="No NaN or infinity in any table of this study.",
         verdict=_word(bad == 0 and missing == 0),
         evidence=f"{bad} of {len(numbers)} numbers are not finite",
         tolerance="none",

@@ -152,7 +152,7 @@ ENTRIES = (
         text="The model is fit for interactive simulation",
         as_stated=(("scaling", "interactive"),),
         under_condition=(("scaling", "interactive"),),
-        remark="sixty frames a second of its own figures, with a thousand times the cells; no size "
-        "and no frame rate is named in the paper",
+        remark="sixty frames a second of its own figures, with more than a hundred times the "
+        "cells; no size and no frame rate is named in the paper",
     ),
 )

@@ -215,7 +215,8 @@ def _harmless_claim(scenes: dict[str, pd.DataFrame], ingredient: str) -> Claim:
         name=f"{ingredient} left out",
         statement={
             DOUBLE: "Single precision is enough for every observable of every scene.",
-            DRY: "Cells that have fallen dry can be cut off without a change of any observable.",
+            DRY: "Cells that have fallen dry can be cut off without a change of any observable, at "
+            "the cost that the cut-off itself has.",
         }[ingredient],
         verdict=Verdict.AGREE if harmless else Verdict.DISAGREE,
         evidence=f"the largest change is {changed:.2g}, of {name} in {scene}; {refused} runs are "

@@ -10,7 +10,9 @@ the same on every machine and stand here.
 
 Seconds are those of the committed record (``reports/speed``, made by ``make speed`` on the machine
 that it names), where also what a user would pick instead takes part: the rule in plain NumPy,
-py-pde's expressions, SciPy's LSODA on the method of lines, FiPy. All times of a scene come from one
+py-pde's expressions (on two scenes: they compile for half a minute a grid), SciPy's LSODA on the
+method of lines (its band holds for open ends only, on the nonlinear wave it has none), FiPy (a few
+coarse grids: a step takes a millisecond and more). All times of a scene come from one
 run in which all take turns; a time is the median of at least five rounds. Where the paper's rule
 reaches an error on no grid tried, its time is a lower bound, by first order from its finest grid:
 half the error takes at least twice the cells and four times the cell-steps.

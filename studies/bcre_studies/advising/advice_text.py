@@ -12,7 +12,7 @@ from rich.markup import escape
 from rich.progress import Progress
 
 from bcre_studies.advising.advise import Advice, Effort, advise
-from bcre_studies.advising.options import Option
+from bcre_studies.advising.options import PRECISE, Option
 from bcre_studies.advising.pilot import with_model
 from bcre_studies.advising.question import Question
 from bcre_studies.advising.scene_text import scene_text
@@ -118,6 +118,9 @@ def _recommended(advice: Advice, best: Option) -> Iterator[str]:
     rate = (question.frames - 1) / best.seconds
     took = f"{_time(best.seconds)} for {question.frames} frames"
     yield f"                {took}, {_short(rate)} frames/s"
+    if question.budget is not None and best.error < PRECISE:
+        equal = f"errors below {_percent(PRECISE)} count as equal"
+        yield f"                {equal}: the cheapest of them"
     if question.budget is not None and best.error + best.spread > question.tolerance:
         yield f"                that may be more than {_percent(question.tolerance)}"
 

@@ -21,7 +21,9 @@ PARTS = {
     ),
     "ratios": (
         "Ratios, each within one run",
-        "Median over the rounds, and the range over them.",
+        "Median over the rounds, and the range over them. What py-pde takes as called is compared "
+        "with an automaton that is compiled; what the automaton's own compiling takes once stands "
+        "under first use.",
     ),
     "sizes": (
         "Cell-steps per second by size",

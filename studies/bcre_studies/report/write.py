@@ -166,4 +166,5 @@ def render(template: str, **content: object) -> str:
 
 
 def _sentence(text: str) -> str:
-    return text[:1].upper() + text[1:]
+    """With a capital at its start; the full stop is the page's."""
+    return (text[:1].upper() + text[1:]).rstrip(".")
