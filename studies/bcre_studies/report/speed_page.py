@@ -62,8 +62,8 @@ def write(folder: Path, tables: record.Tables) -> None:
         "title": "Speed on this machine" if local else "Speed: the record",
         "lead": "Measured on the machine at hand; not part of the repository."
         if local
-        else "Measured on one machine, what is compared always in one run; its seconds are its own, "
-        "ratios carry over.",
+        else "Measured on one machine, what is compared always in one run. Its seconds are its "
+        "own, ratios carry over.",
         "command": "make reports" if local else "make speed",
         "machine": kept["machine"].to_dict("records"),
         "parts": [_part(name, kept[name]) for name in PARTS if name in kept],
