@@ -70,13 +70,13 @@ def run(
     loaded = load(scene, assignments)  # what is refused here need not wait for the solvers
     from bcre_studies.run import run_scene, write_run
 
+    summary = write_run(run_scene(loaded, model, frames), folder)
     if model != "pde" and loaded.material.kappa > 0 and loaded.automaton.scheme == "upwind":
         click.echo(
             "note: the paper's rule has no curvature term; the automaton runs without "
             f"kappa = {loaded.material.kappa!r} (automaton.scheme calibrated or limited takes it)",
             err=True,
         )
-    summary = write_run(run_scene(loaded, model, frames), folder)
     for name, numbers in summary.items():
         facts = ", ".join(f"{key} {_short(value)}" for key, value in numbers.items())
         click.echo(f"{name}: {facts}")

@@ -55,7 +55,7 @@ def measure_local() -> Tables:
     quick = tuple(
         contender for contender in contest.own() if contender.name not in ("PDE, LSODA", "PDE, BDF")
     )
-    raced = race(quick, LOCAL_SCENES, most=3e7)
+    raced = race(quick, LOCAL_SCENES, most=8e6)
     return {
         "machine": _machine(),
         "contest": raced,
