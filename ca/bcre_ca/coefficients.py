@@ -12,6 +12,8 @@ from typing import Any, NamedTuple
 
 from numba.extending import register_jitable
 
+from bcre_ca.exchange import exchanging
+
 
 class Parameters(NamedTuple):
     """A :class:`bcre_ca.Rule` without its dt, as compiled code takes it.
@@ -55,7 +57,7 @@ class Coefficients(NamedTuple):
     dry: float | None
 
 
-@register_jitable  # type: ignore[untyped-decorator]
+@register_jitable
 def fold(p: Parameters, dt: float) -> Coefficients:
     """The coefficients of a step dt.
 
@@ -77,7 +79,7 @@ def fold(p: Parameters, dt: float) -> Coefficients:
     )
 
 
-@register_jitable  # type: ignore[untyped-decorator]
+@register_jitable
 def _diffusion(b: Any, c: float, calibrated: bool | None) -> Any:
     if b is None:
         return None
@@ -86,35 +88,36 @@ def _diffusion(b: Any, c: float, calibrated: bool | None) -> Any:
     return max(b - c * (1.0 - c) / 2, 0.0)
 
 
-@register_jitable  # type: ignore[untyped-decorator]
+@register_jitable
 def _saturation(gamma: float, v_up: Any) -> Any:
     if v_up is None:
         return None
     return gamma / v_up
 
 
-@register_jitable  # type: ignore[untyped-decorator]
+@register_jitable
 def _scaled_before(value: Any, factor: float, divisor: float) -> Any:
     if value is None:
         return None
     return value * factor / divisor
 
 
-@register_jitable  # type: ignore[untyped-decorator]
+@register_jitable
 def _sum(c: float, b: Any) -> float:
     if b is None:
         return c
-    return c + b  # type: ignore[no-any-return]
+    total: float = c + b
+    return total
 
 
-@register_jitable  # type: ignore[untyped-decorator]
+@register_jitable
 def _scaled(value: Any, factor: float) -> Any:
     if value is None:
         return None
     return value * factor
 
 
-@register_jitable  # type: ignore[untyped-decorator]
+@register_jitable
 def largest_step(p: Parameters, largest_R: float, sink: float) -> float:
     """Largest dt that keeps R >= 0 and the surface wave stable; see :mod:`bcre_ca.theory`.
 
@@ -123,11 +126,12 @@ def largest_step(p: Parameters, largest_R: float, sink: float) -> float:
     largest_R: largest rolling layer, a length.
     sink: fastest loss per unit of layer, max(kappa h_xx - gamma (S - Sc), 0), 1/time.
     """
+    X = exchanging(largest_R, _saturation(p.gamma, p.v_up))
     largest: float = _largest_step(
         p.v / p.d,
         _over(p.D, p.d**2),
-        p.gamma / p.d * _exchanging(largest_R, p.gamma, p.v_up),
-        _curvature_rate(_exchanging(largest_R, p.gamma, p.v_up), p.d, p.kappa),
+        p.gamma / p.d * X,
+        _curvature_rate(X, p.d, p.kappa),
         sink,
         p.calibrated,
         p.limited,
@@ -136,28 +140,21 @@ def largest_step(p: Parameters, largest_R: float, sink: float) -> float:
     return largest
 
 
-@register_jitable  # type: ignore[untyped-decorator]
+@register_jitable
 def _over(D: float | None, area: float) -> float:
     if D is None:
         return 0.0
     return D / area
 
 
-@register_jitable  # type: ignore[untyped-decorator]
-def _exchanging(R: float, gamma: float, v_up: float | None) -> float:
-    if v_up is None:
-        return R
-    return R / (1.0 + gamma * R / v_up)
-
-
-@register_jitable  # type: ignore[untyped-decorator]
+@register_jitable
 def _curvature_rate(X: float, d: float, kappa: float | None) -> float:
     if kappa is None:
         return 0.0
     return kappa * X / d**2
 
 
-@register_jitable  # type: ignore[untyped-decorator]
+@register_jitable
 def _largest_step(
     drift: float,
     spread: float,
@@ -180,13 +177,13 @@ def _largest_step(
     return min(of_layer, of_wave)
 
 
-@register_jitable  # type: ignore[untyped-decorator]
+@register_jitable
 def _step_of_quadratic(p: float, q: float) -> float:
     """Largest t with (p t)^2 + q t <= 1."""
     step: float = 2.0 * _inverse(q + math.sqrt(q * q + 4 * p * p))
     return step
 
 
-@register_jitable  # type: ignore[untyped-decorator]
+@register_jitable
 def _inverse(rate: float) -> float:
     return 1.0 / rate if rate > 0 else math.inf

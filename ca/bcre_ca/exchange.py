@@ -14,7 +14,7 @@ from typing import Any
 from numba.extending import register_jitable
 
 
-@register_jitable  # type: ignore[untyped-decorator]
+@register_jitable
 def exchanging(R: Any, a: float | None) -> Any:
     """X(R), the part of the layer that exchanges; ``a`` is gamma/v_up or None."""
     if a is None:
@@ -22,7 +22,7 @@ def exchanging(R: Any, a: float | None) -> Any:
     return R / (1.0 + a * R)
 
 
-@register_jitable  # type: ignore[untyped-decorator]
+@register_jitable
 def eroded(
     R: Any, drop: Any, bend: Any, k: float, a: float | None, m: float | None, u: float | None
 ) -> Any:
@@ -49,7 +49,7 @@ def eroded(
     return X * (k * drop + (u * (1.0 - k * X) - m) * bend)
 
 
-@register_jitable  # type: ignore[untyped-decorator]
+@register_jitable
 def carried(R: Any, R_next: Any, q: float, b: float | None) -> Any:
     """dt/d F, what leaves a cell of layer R for the next one; ``b`` is None without diffusion."""
     if b is None:
@@ -57,7 +57,7 @@ def carried(R: Any, R_next: Any, q: float, b: float | None) -> Any:
     return q * R - b * R_next
 
 
-@register_jitable  # type: ignore[untyped-decorator]
+@register_jitable
 def spread(difference: Any, b: float | None) -> Any:
     """b times a difference of layers; 0 without diffusion."""
     if b is None:
@@ -65,7 +65,7 @@ def spread(difference: Any, b: float | None) -> Any:
     return b * difference
 
 
-@register_jitable  # type: ignore[untyped-decorator]
+@register_jitable
 def settle(h: Any, R: Any, dry: float | None) -> tuple[Any, Any]:
     """h and R after a layer thinner than ``dry`` has come to rest; mass stays.
 

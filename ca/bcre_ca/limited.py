@@ -77,7 +77,7 @@ def _differences(R: Array, *, periodic: bool) -> tuple[Array, Array]:
     return np.append(across, between), np.append(between, across)
 
 
-@register_jitable  # type: ignore[untyped-decorator]
+@register_jitable
 def predicted(
     h: Any, R: Any, above: Any, below: Any, R_above: Any, R_below: Any, K: Coefficients
 ) -> tuple[Any, Any, Any, Any]:
@@ -89,7 +89,7 @@ def predicted(
     return h - 0.5 * change, R_mid, _within(R_mid + 0.5 * r, 2.0 * R), g
 
 
-@register_jitable  # type: ignore[untyped-decorator]
+@register_jitable
 def corrected(
     h: Any, R: Any, R_mid: Any, flux_in: Any, flux_out: Any, drop: Any, bend: Any, K: Coefficients
 ) -> Any:
@@ -98,7 +98,7 @@ def corrected(
     return settle(h - change, R + ((flux_in - flux_out) + change), K.dry)
 
 
-@register_jitable  # type: ignore[untyped-decorator]
+@register_jitable
 def limited(a: Any, b: Any) -> Any:
     """Mean of two neighbouring differences, at most twice the lesser; 0 where their signs differ
     (monotonized central, van Leer 1977)."""
@@ -107,7 +107,7 @@ def limited(a: Any, b: Any) -> Any:
     return rising + _smaller(_larger(2.0 * _larger(a, b), mean), 0.0)
 
 
-@register_jitable  # type: ignore[untyped-decorator]
+@register_jitable
 def _within(value: Any, highest: Any) -> Any:
     return _larger(_smaller(value, highest), 0.0)
 

@@ -92,13 +92,11 @@ def fewest_cell_steps(errors: pd.DataFrame) -> pd.DataFrame:
         row: dict[str, Any] = {"scene": label, "contender": contender}
         for target in TARGETS:
             best = cheapest(group, target, "cell_steps")
-            row[_percent(target)] = "not reached" if best is None else f"{best['cell_steps']:.2g}"
+            row[f"cell-steps to {_percent(target)}"] = (
+                "not reached" if best is None else f"{best['cell_steps']:.2g}"
+            )
         rows.append(row)
     return pd.DataFrame(rows)
-
-
-def _percent(target: float) -> str:
-    return f"cell-steps to {100 * target:g} %"
 
 
 def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
@@ -116,23 +114,27 @@ def _winners(seconds: pd.DataFrame, ours: tuple[str, ...]) -> list[dict[str, Any
     for (label, target), group in seconds.groupby(["scene", "error"], sort=False):
         mine = group[group["contender"].isin(ours)]
         pde = group[group["contender"].str.startswith("PDE")]
+        fastest = mine["seconds"].min() if len(mine) else math.inf
+        bound = group["automaton_s"].fillna(math.inf).iloc[0]
         rows.append(
             {
                 "scene": label,
                 "error": target,
-                "ours": mine["seconds"].min() if len(mine) else math.inf,
+                "ours": fastest,
                 "pde": pde["seconds"].min() if len(pde) else math.inf,
-                "at_least": mine["seconds"].min()
-                if len(mine)
-                else group["automaton_s"].fillna(math.inf).iloc[0],
+                "at_least": fastest if len(mine) else bound,
             }
         )
     return rows
 
 
+def _won(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    return [row for row in rows if row["ours"] < row["pde"]]
+
+
 def _efficiency(seconds: pd.DataFrame) -> Claim:
     papers, better = _winners(seconds, (PAPERS,)), _winners(seconds, BETTER)
-    won = [row for row in papers if row["ours"] < row["pde"]]
+    won = _won(papers)
     return Claim(
         name="efficiency",
         statement="At equal error the paper's automaton takes less time than BCRE's solver.",
@@ -144,8 +146,7 @@ def _efficiency(seconds: pd.DataFrame) -> Claim:
 
 
 def _where_it_wins(rows: list[dict[str, Any]]) -> str:
-    reached = [row for row in rows if math.isfinite(row["ours"])]
-    won = [row for row in reached if row["ours"] < row["pde"]]
+    won = _won(rows)
     coarse = [row for row in won if row["error"] == TARGETS[0]]
     least, most = _span([row["pde"] / row["ours"] for row in coarse])
     return (
@@ -161,7 +162,7 @@ def _where_the_pde_wins(rows: list[dict[str, Any]]) -> str:
     told = [row for row in lost if math.isfinite(row["at_least"])]
     never = sorted({row["scene"] for row in lost if math.isinf(row["at_least"])})
     by = ", ".join(
-        f"{_percent_of(target)} by {least:.2g} to {most:.2g} times"
+        f"{_percent(target)} by {least:.2g} to {most:.2g} times"
         for target in TARGETS
         for least, most in [_span([r["at_least"] / r["pde"] for r in told if r["error"] == target])]
         if most > 0
@@ -180,13 +181,12 @@ def _where_the_pde_wins(rows: list[dict[str, Any]]) -> str:
 def _what_better_rules_win(rows: list[dict[str, Any]]) -> str:
     down_to_1 = [row for row in rows if row["error"] >= 0.01]
     finest = [row for row in rows if row["error"] == TARGETS[-1]]
-    won = [row for row in down_to_1 if row["ours"] < row["pde"]]
+    won = _won(down_to_1)
     least, most = _span([row["pde"] / row["ours"] for row in won])
-    at_finest = sum(row["ours"] < row["pde"] for row in finest)
     return (
         f"Calibrated or flux-limited, the automaton is the faster in {len(won)} of "
         f"{len(down_to_1)} pairs down to 1 %, by {least:.2g} to {most:.2g} times, and in "
-        f"{at_finest} of {len(finest)} at 0.1 %"
+        f"{len(_won(finest))} of {len(finest)} at 0.1 %"
     )
 
 
@@ -194,13 +194,13 @@ def _span(ratios: list[float]) -> tuple[float, float]:
     return (min(ratios), max(ratios)) if ratios else (0.0, 0.0)
 
 
-def _percent_of(target: float) -> str:
+def _percent(target: float) -> str:
     return f"{100 * target:g} %"
 
 
 def _where(rows: list[dict[str, Any]], won: list[dict[str, Any]]) -> str:
     told = [
-        f"{row['scene']} at {100 * row['error']:g} % ({_ms(row['ours'])} against {_ms(row['pde'])})"
+        f"{row['scene']} at {_percent(row['error'])} ({_ms(row['ours'])} against {_ms(row['pde'])})"
         for row in won
     ]
     return f"the automaton is faster in {len(won)} of {len(rows)} cases: " + (
@@ -213,7 +213,7 @@ def _lost(row: dict[str, Any]) -> str:
     if math.isinf(row["ours"]):
         bound = row["at_least"]
         mine = f"at least {_ms(bound)}" if math.isfinite(bound) else "never"
-    return f"{row['scene']} at {100 * row['error']:g} %: {mine} against {_ms(row['pde'])}"
+    return f"{row['scene']} at {_percent(row['error'])}: {mine} against {_ms(row['pde'])}"
 
 
 def _ms(seconds: float) -> str:
@@ -227,7 +227,7 @@ def _ms(seconds: float) -> str:
 def _coarse(seconds: pd.DataFrame) -> Claim:
     rows = [row for row in _winners(seconds, (PAPERS,)) if row["error"] == TARGETS[0]]
     rows = [row for row in rows if math.isfinite(row["ours"])]
-    won = [row for row in rows if row["ours"] < row["pde"]]
+    won = _won(rows)
     return Claim(
         name="efficiency at 10 %",
         statement="Where an error of 10 % does and the paper's automaton reaches it, it is faster.",
@@ -239,7 +239,7 @@ def _coarse(seconds: pd.DataFrame) -> Claim:
 
 def _improved(seconds: pd.DataFrame) -> Claim:
     rows = [row for row in _winners(seconds, BETTER) if row["error"] >= 0.01]
-    won = [row for row in rows if row["ours"] < row["pde"]]
+    won = _won(rows)
     return Claim(
         name="efficiency, better rules",
         statement="Down to 1 % the calibrated or the flux-limited automaton is faster than BCRE's "

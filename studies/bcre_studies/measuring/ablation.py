@@ -95,11 +95,6 @@ class Refused(ArithmeticError):  # noqa: N818 - named for what happened
     """The model cannot be run: its step is not stable."""
 
 
-def full_model(scene: Scene) -> Trial:
-    """The automaton as the scene stands."""
-    return run(scene, Model())
-
-
 def run(scene: Scene, model: Model) -> Trial:
     """The scene in the model, at :data:`FRAMES` equally spaced times.
 

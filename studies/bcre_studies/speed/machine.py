@@ -18,8 +18,6 @@ from pathlib import Path
 import numba
 import numpy as np
 
-from bcre_studies.speed.clock import interleaved
-
 ADDITIONS_A_CELL = 7
 """1 in the flux, 2 in the slope, 1 for h, 3 for R."""
 
@@ -69,21 +67,6 @@ def memory_pass(cells: int = 10_000_000) -> Load:
     """One pass that reads and writes h and R of so many cells in place: 32 bytes a cell."""
     h, R = np.zeros(cells), np.full(cells, 1e-3)
     return Load(lambda: _pass_over(h, R, 1e-3), 32.0 * cells)
-
-
-def add_rate(rounds: int = 5) -> float:
-    """Additions per second of one core, see :func:`additions`; the best of the rounds."""
-    return _best_rate(additions(), rounds)
-
-
-def pass_rate(rounds: int = 5) -> float:
-    """Bytes per second of one core in :func:`memory_pass`; the best of the rounds."""
-    return _best_rate(memory_pass(), rounds)
-
-
-def _best_rate(load: Load, rounds: int) -> float:
-    timed = interleaved({"load": load.call}, rounds)
-    return float(load.amount / timed["smallest_s"].iloc[0])
 
 
 @numba.njit(cache=True)
