@@ -1,40 +1,69 @@
-"""The studies, in the order in which a reader should meet them."""
+"""The studies, in the order in which a reader should meet them.
+
+Titles stand here so that listing the studies imports none of them.
+"""
 
 from __future__ import annotations
 
 import importlib
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING, NamedTuple, Protocol, cast
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-    from bcre_studies.claim import Claim
+    from bcre_studies.comparison.claim import Claim
 
-STUDIES = (
-    "paper_figures",
-    "repose_return",
-    "roughness_decay",
-    "random_roughness",
-    "uphill_propagation",
-    "second_critical_angle",
-    "modified_equation",
-    "printed_rule",
-    "one_variable",
-    "order_of_accuracy",
-    "speed_error",
-    "scaling",
-    "scene_needs",
-    "stability",
-    "hard_cases",
-    "advice",
-)
+
+class Entry(NamedTuple):
+    """Where a study's module is, below ``bcre_studies``, and its title."""
+
+    module: str
+    title: str
+
+
+STUDIES = {
+    "paper_figures": Entry("validation.paper_figures", "The paper's figures in both models"),
+    "repose_return": Entry("validation.repose_return.study", "Return to the angle of repose"),
+    "roughness_decay": Entry("validation.roughness_decay", "Decay of roughness, mode by mode"),
+    "random_roughness": Entry(
+        "validation.random_roughness", "Decay of random roughness over 32 seeds"
+    ),
+    "uphill_propagation": Entry(
+        "validation.uphill_propagation", "Uphill propagation, one mechanism at a time"
+    ),
+    "second_critical_angle": Entry(
+        "validation.second_critical_angle.study", "The second critical angle"
+    ),
+    "modified_equation": Entry(
+        "verification.modified_equation",
+        "How much of the difference is the automaton's own diffusion?",
+    ),
+    "printed_rule": Entry("validation.printed_rule", "The printed rule, read in every way"),
+    "one_variable": Entry(
+        "validation.one_variable", "Control: which properties need the second layer?"
+    ),
+    "order_of_accuracy": Entry(
+        "verification.order_of_accuracy", "Observed order of accuracy on exact solutions"
+    ),
+    "speed_error": Entry("performance.speed_error", "Speed against error"),
+    "scaling": Entry("performance.scaling", "Speed by size, and the real-time budget"),
+    "scene_needs": Entry("performance.scene_needs.study", "What does a scene need?"),
+    "stability": Entry(
+        "verification.stability.study", "Where a step stops being stable, measured and predicted"
+    ),
+    "hard_cases": Entry(
+        "verification.hard_cases.study", "Hard cases: what happens, and who says so"
+    ),
+    "advice": Entry(
+        "performance.advice", "Does the advised model reach the tolerance, at the least cost?"
+    ),
+}
 
 
 class Study(Protocol):
-    """What every study module offers; its docstring says what is measured, and by what equation."""
+    """What every study module offers; its docstring gives what is measured and its equation."""
 
-    TITLE: str
     __doc__: str | None
 
     def run(self) -> dict[str, pd.DataFrame]:
@@ -49,4 +78,4 @@ class Study(Protocol):
 
 def study(name: str) -> Study:
     """The study of that name, imported now."""
-    return cast("Study", importlib.import_module(f"bcre_studies.{name}"))
+    return cast("Study", importlib.import_module(f"bcre_studies.{STUDIES[name].module}"))

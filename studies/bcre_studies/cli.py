@@ -10,7 +10,7 @@ from typing import Literal
 
 import click
 
-from bcre_studies.line import one_line
+from bcre_studies.system.one_line import one_line
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -21,15 +21,15 @@ def app() -> None:
 @app.command("list")
 def list_all() -> None:
     """List the built-in scenes and the studies."""
-    from bcre_studies.catalog import STUDIES, study
-    from bcre_studies.scene import built_in_names, load
+    from bcre_studies.catalog import STUDIES
+    from bcre_studies.scenes.listing import built_in_names, built_in_title
 
     click.echo("Scenes (bcre run SCENE):")
     for name in built_in_names():
-        click.echo(f"  {name:24}{load(name).title}")
+        click.echo(f"  {name:24}{built_in_title(name)}")
     click.echo("Studies (bcre study NAME):")
-    for name in STUDIES:
-        click.echo(f"  {name:24}{study(name).TITLE}")
+    for name, entry in STUDIES.items():
+        click.echo(f"  {name:24}{entry.title}")
 
 
 @app.command()
@@ -62,13 +62,13 @@ def run(
     out: Path | None,
 ) -> None:
     """Run SCENE, a built-in name or a TOML file; write profiles.csv and summary.json."""
-    from bcre_studies.report.files import require_writable
-    from bcre_studies.scene import load
+    from bcre_studies.scenes.scene import load
+    from bcre_studies.system.files import require_writable
 
     folder = Path("out") / Path(scene).stem if out is None else out
     require_writable("--out", folder, ("profiles.csv", "summary.json"))
     loaded = load(scene, assignments)  # what is refused here need not wait for the solvers
-    from bcre_studies.run import run_scene, write_run
+    from bcre_studies.running.run import run_scene, write_run
 
     summary = write_run(run_scene(loaded, model, frames), folder)
     if model != "pde" and loaded.material.kappa > 0 and loaded.automaton.scheme == "upwind":
@@ -110,9 +110,9 @@ def advise(
     out: Path | None,
 ) -> None:
     """Which model and cells answer SCENE to a tolerance at the least cost; by short pilots."""
-    from bcre_studies.advising.advice_text import answer
-    from bcre_studies.advising.question import Question, seconds_of
-    from bcre_studies.scene import load
+    from bcre_studies.advisor.advice_text import answer
+    from bcre_studies.advisor.question import Question, seconds_of
+    from bcre_studies.scenes.scene import load
 
     seconds = None if budget is None else seconds_of(budget)
     question = Question(load(scene, assignments), tolerance, observable, seconds, frames)
@@ -130,7 +130,7 @@ def run_studies(names: tuple[str, ...]) -> None:
         if name not in STUDIES:
             allowed = ", ".join(STUDIES)
             raise click.UsageError(f"NAME = {name!r}: must be one of {allowed}")
-    from bcre_studies.report.write import write_studies
+    from bcre_studies.publishing.write import write_studies
 
     for finding in write_studies(names):
         for claim in finding.claims:
@@ -140,8 +140,8 @@ def run_studies(names: tuple[str, ...]) -> None:
 @app.command()
 def report() -> None:
     """Run all studies and write reports/ with its index."""
-    from bcre_studies.report.files import REPORTS
-    from bcre_studies.report.write import write_all
+    from bcre_studies.publishing.write import write_all
+    from bcre_studies.system.files import REPORTS
 
     claims = [claim for finding in write_all() for claim in finding.claims]
     click.echo(f"{len(claims)} claims judged; read {REPORTS / 'README.md'}")
@@ -153,9 +153,9 @@ def report() -> None:
 )
 def speed(record: bool) -> None:
     """Measure speed on this machine into reports/local (a minute)."""
-    from bcre_studies.report.speed_page import write
-    from bcre_studies.speed import fipy_solver
-    from bcre_studies.speed.record import LOCAL, RECORD, measure_local, measure_record
+    from bcre_studies.performance.record.page import write
+    from bcre_studies.performance.record.record import LOCAL, RECORD, measure_local, measure_record
+    from bcre_studies.performance.rivals import fipy_solver
 
     if record and not fipy_solver.available():
         click.echo("FiPy is not installed and takes no part (make bench installs it)", err=True)
@@ -168,7 +168,7 @@ def speed(record: bool) -> None:
 def check() -> None:
     """Judge all claims again; exit 1 where a verdict differs from the recorded one."""
     from bcre_studies.catalog import STUDIES
-    from bcre_studies.report.write import find, recorded_verdicts, verdict_table
+    from bcre_studies.publishing.write import find, recorded_verdicts, verdict_table
 
     recorded = recorded_verdicts()
     verdicts = verdict_table([find(name) for name in STUDIES])

@@ -8,15 +8,15 @@ import pytest
 
 import bcre_ca
 from bcre_pde import BCRE
-from bcre_studies.scene import load
-from bcre_studies.simulate import problem_of
-from bcre_studies.speed import (
+from bcre_studies.models.simulate import problem_of
+from bcre_studies.performance.rivals import (
     fipy_solver,
-    machine,
     method_of_lines,
     numpy_automaton,
     pypde_expressions,
 )
+from bcre_studies.scenes.scene import load
+from bcre_studies.timing import machine
 
 ROUNDS = 5
 STEPS = {1_000: 20_000, 100_000: 200, 10_000_000: 20}

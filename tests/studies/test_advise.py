@@ -8,21 +8,21 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from bcre_studies import advice as study
-from bcre_studies.advising.advice_text import answer
-from bcre_studies.advising.advise import Effort, advise
-from bcre_studies.advising.candidate import SAFETY, Candidate, Pilot
-from bcre_studies.advising.closed_forms import closed_form
-from bcre_studies.advising.deviation import OBSERVABLES, deviation, posed, uncertainty
-from bcre_studies.advising.pilot import Allowance, PilotError, reference, run_model, sees_start
-from bcre_studies.advising.question import Question, seconds_of
-from bcre_studies.advising.random_scenes import random_scene
-from bcre_studies.advising.scene_text import scene_text
+from bcre_studies.advisor.advice_text import answer
+from bcre_studies.advisor.advise import Effort, advise
+from bcre_studies.advisor.candidate import SAFETY, Candidate, Pilot
+from bcre_studies.advisor.closed_forms import closed_form
+from bcre_studies.advisor.deviation import OBSERVABLES, deviation, posed, uncertainty
+from bcre_studies.advisor.pilot import Allowance, PilotError, reference, run_model, sees_start
+from bcre_studies.advisor.question import Question, seconds_of
+from bcre_studies.advisor.scene_text import scene_text
 from bcre_studies.cli import app
-from bcre_studies.run import run_scene
-from bcre_studies.scene import load
-from bcre_studies.simulate import frame_times
-from bcre_studies.speed.costs import recorded
+from bcre_studies.models.simulate import frame_times
+from bcre_studies.performance import advice as study
+from bcre_studies.performance.random_scenes import random_scene
+from bcre_studies.running.run import run_scene
+from bcre_studies.scenes.scene import load
+from bcre_studies.timing.costs import recorded
 
 
 def counted(**options):

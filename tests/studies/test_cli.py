@@ -20,9 +20,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bcre_studies import catalog, cli
-from bcre_studies import run as run_module
-from bcre_studies.scene import SECTIONS, built_in_names, load
-from bcre_studies.simulate import rule_of
+from bcre_studies.models.simulate import rule_of
+from bcre_studies.running import run as run_module
+from bcre_studies.scenes.listing import built_in_names
+from bcre_studies.scenes.scene import SECTIONS, load
 
 SCENE = """
 title = "A pulse"

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import bcre_pde
-from bcre_studies.claim import Verdict
-from bcre_studies.compare import (
+from bcre_studies.comparison.claim import Verdict
+from bcre_studies.comparison.compare import (
     Comparison,
     compare,
     relative_difference,
@@ -16,8 +16,8 @@ from bcre_studies.compare import (
     significant,
     to_error,
 )
-from bcre_studies.scene import load
-from bcre_studies.simulate import as_run, problem_of, run_automaton
+from bcre_studies.models.simulate import as_run, problem_of, run_automaton
+from bcre_studies.scenes.scene import load
 
 
 def refined(value, error, allowed):

@@ -6,9 +6,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bcre_studies.scene import load
-from bcre_studies.speed import costs
-from bcre_studies.speed.costs import CELLS, CLOSURES, MODELS, Costs, closures_of
+from bcre_studies.scenes.scene import load
+from bcre_studies.timing import costs
+from bcre_studies.timing.costs import CELLS, CLOSURES, MODELS, Costs, closures_of
 
 TABLE = """model,closures,cells,cell_step_s,frame_s
 upwind,none,100,1e-9,1e-4

@@ -2,8 +2,8 @@
 
 import pytest
 
-from bcre_studies.report import pickles
 from bcre_studies.robustness import faults, fuzz, kills
+from bcre_studies.system import pickles
 
 
 def test_no_spoilt_scene_crashes_and_the_count_is_the_same_every_time():

@@ -6,10 +6,10 @@ import pytest
 
 import bcre_ca
 import bcre_pde
-from bcre_studies import hard_cases as study
-from bcre_studies.claim import Verdict
-from bcre_studies.hard_cases import FAILS, REFUSED, SURVIVES, Case
-from bcre_studies.measuring import adaptive_step, scarp_grids
+from bcre_studies.comparison.claim import Verdict
+from bcre_studies.verification.hard_cases import adaptive_step, scarp_grids
+from bcre_studies.verification.hard_cases import study as study
+from bcre_studies.verification.hard_cases.study import FAILS, REFUSED, SURVIVES, Case
 
 SCENES = study.scenes()
 

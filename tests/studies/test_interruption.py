@@ -14,9 +14,11 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from bcre_studies import cli, work
-from bcre_studies.report import files, pickles, store
-from bcre_studies.report.files import replace_bytes, replace_file, require_writable, workshop
+from bcre_studies import cli
+from bcre_studies.publishing import store
+from bcre_studies.sweeps import each as work
+from bcre_studies.system import files, pickles
+from bcre_studies.system.files import replace_bytes, replace_file, require_writable, workshop
 
 
 def measure(case):
@@ -229,7 +231,8 @@ def test_store_keeps_the_latest_states_of_a_study_and_forgets_the_others(tmp_pat
 SLEEPERS = """
 import os, sys, time
 from pathlib import Path
-from bcre_studies import cli, work
+from bcre_studies.sweeps import each as work
+from bcre_studies import cli
 
 def sleep(case):
     Path(f"started-{os.getpid()}").touch()

@@ -5,16 +5,17 @@ import sys
 
 import pytest
 
-from bcre_studies import memory, tables
-from bcre_studies import run as run_module
-from bcre_studies.run import require_runnable, run_scene
-from bcre_studies.scene import SceneError, load
+from bcre_studies.running import run as run_module
+from bcre_studies.running.run import require_runnable, run_scene
+from bcre_studies.scenes import tables
+from bcre_studies.scenes.scene import SceneError, load
+from bcre_studies.system import memory
 
 MEASURE = """
 import resource, sys
 from pathlib import Path
-from bcre_studies.run import run_scene, write_run
-from bcre_studies.scene import load
+from bcre_studies.running.run import run_scene, write_run
+from bcre_studies.scenes.scene import load
 
 def peak():
     # What getrusage tells begins with the memory of the process that started this one.

@@ -4,10 +4,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bcre_studies import modified_equation as study
-from bcre_studies.claim import Verdict
-from bcre_studies.compare import compare, sample
-from bcre_studies.scene import load
+from bcre_studies.comparison.claim import Verdict
+from bcre_studies.comparison.compare import compare, sample
+from bcre_studies.scenes.scene import load
+from bcre_studies.verification import modified_equation as study
 
 
 def left(*case):

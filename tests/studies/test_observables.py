@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from bcre_studies.measuring import observables as o
-from bcre_studies.scene import load
+from bcre_studies.observables import named as o
+from bcre_studies.scenes.scene import load
 
 OPEN, CLOSED = load("figure3"), load("rough_slope")
 L, SC = 100.0, 0.5

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 import bcre_pde
-from bcre_studies.claim import Verdict
-from bcre_studies.measuring import observe, scaled
-from bcre_studies.scene import load
-from bcre_studies.simulate import Run
+from bcre_studies.comparison import scaled
+from bcre_studies.comparison.claim import Verdict
+from bcre_studies.models.simulate import Run
+from bcre_studies.observables import fronts as observe
+from bcre_studies.scenes.scene import load
 
 SCENE = load("figure3")
 

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bcre_studies import one_variable as study
-from bcre_studies.claim import Verdict
-from bcre_studies.measuring.height_only import SETTLED, settle
-from bcre_studies.measuring.outcome import slope
+from bcre_studies.comparison.claim import Verdict
+from bcre_studies.models.height_only import SETTLED, settle
+from bcre_studies.observables.outcome import slope
+from bcre_studies.validation import one_variable as study
 
 CELLS, D = 60, 0.5
 X = (np.arange(CELLS) + 0.5) * D

@@ -8,8 +8,8 @@ import pytest
 
 import bcre_ca
 from bcre_pde import exact
-from bcre_studies import order_of_accuracy as study
-from bcre_studies.claim import Verdict
+from bcre_studies.comparison.claim import Verdict
+from bcre_studies.verification import order_of_accuracy as study
 
 SOLUTIONS = {
     "climbing": exact.climbing_hump(

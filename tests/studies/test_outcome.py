@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from bcre_studies.measuring.outcome import (
+from bcre_studies.models.simulate import Run
+from bcre_studies.observables.outcome import (
     Outcome,
     growth_rate,
     outcome,
@@ -13,8 +14,7 @@ from bcre_studies.measuring.outcome import (
     slope,
     spent,
 )
-from bcre_studies.scene import load
-from bcre_studies.simulate import Run
+from bcre_studies.scenes.scene import load
 
 CENTRE = 85.0
 

@@ -4,12 +4,18 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bcre_studies import paper_figures
-from bcre_studies.claim import Verdict
-from bcre_studies.compare import SHARE, refine, relative_difference, relative_error, sample
-from bcre_studies.paper_figures import TOLERANCE, figure_scene
-from bcre_studies.scene import load
-from bcre_studies.simulate import effective_problem_of, rule_of, run_automaton
+from bcre_studies.comparison.claim import Verdict
+from bcre_studies.comparison.compare import (
+    SHARE,
+    refine,
+    relative_difference,
+    relative_error,
+    sample,
+)
+from bcre_studies.models.simulate import effective_problem_of, rule_of, run_automaton
+from bcre_studies.scenes.scene import load
+from bcre_studies.validation import paper_figures
+from bcre_studies.validation.paper_figures import TOLERANCE, figure_scene
 
 DIFFERENCES = {
     ("figure2", 1): (0.53, 0.007),

@@ -8,11 +8,11 @@ import pandas as pd
 import pytest
 
 import bcre_ca
-from bcre_studies import printed_rule as study
-from bcre_studies.claim import Verdict
-from bcre_studies.measuring.outcome import slope
-from bcre_studies.scene import load
-from bcre_studies.simulate import rule_of
+from bcre_studies.comparison.claim import Verdict
+from bcre_studies.models.simulate import rule_of
+from bcre_studies.observables.outcome import slope
+from bcre_studies.scenes.scene import load
+from bcre_studies.validation import printed_rule as study
 
 
 def rule(v=0.1, D=0.1, d=1.0, dt=1.0, order="synchronous", sign="consistent"):

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from bcre_studies.advising.random_scenes import random_scene
-from bcre_studies.scene import Scene
+from bcre_studies.performance.random_scenes import random_scene
+from bcre_studies.scenes.scene import Scene
 
 FIRST = {"v": 0.1424, "length": 108.6}
 MANY = [random_scene(index) for index in range(100)]

@@ -18,9 +18,11 @@ import bcre_ca
 import bcre_pde
 import bcre_studies
 from bcre_studies import catalog, cli
-from bcre_studies.claim import Claim, Verdict
-from bcre_studies.report import files, store, style, write
-from bcre_studies.report.files import replace_bytes, replace_file, replace_text
+from bcre_studies.comparison.claim import Claim, Verdict
+from bcre_studies.publishing import store, write
+from bcre_studies.reporting import style
+from bcre_studies.system import files
+from bcre_studies.system.files import replace_bytes, replace_file, replace_text
 
 
 @pytest.fixture

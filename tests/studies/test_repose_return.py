@@ -4,13 +4,19 @@ import pandas as pd
 import pytest
 
 import bcre_pde
-from bcre_studies import repose_return
-from bcre_studies.claim import Verdict
-from bcre_studies.measuring.outcome import slope
-from bcre_studies.measuring.repeated_pulses import slopes_of_automaton, slopes_of_pde
-from bcre_studies.measuring.thin_pulse import slope_after_thin_pulse
-from bcre_studies.repose_return import FAST, SLOW, closed_form, effective_of, scene_of
-from bcre_studies.simulate import problem_of, run_automaton
+from bcre_studies.comparison.claim import Verdict
+from bcre_studies.models.simulate import problem_of, run_automaton
+from bcre_studies.observables.outcome import slope
+from bcre_studies.validation.repose_return import study as repose_return
+from bcre_studies.validation.repose_return.repeated_pulses import slopes_of_automaton, slopes_of_pde
+from bcre_studies.validation.repose_return.study import (
+    FAST,
+    SLOW,
+    closed_form,
+    effective_of,
+    scene_of,
+)
+from bcre_studies.validation.repose_return.thin_pulse import slope_after_thin_pulse
 
 
 def final_slopes(scene, cells=100):

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import bcre_pde
-from bcre_studies import roughness_decay
-from bcre_studies.claim import Verdict
-from bcre_studies.measuring import observe
-from bcre_studies.scene import load
-from bcre_studies.simulate import as_run, problem_of, run_automaton
+from bcre_studies.comparison.claim import Verdict
+from bcre_studies.models.simulate import as_run, problem_of, run_automaton
+from bcre_studies.observables import fronts as observe
+from bcre_studies.scenes.scene import load
+from bcre_studies.validation import roughness_decay
 
 R0, GAMMA, SPAN = 7.3, 0.023, 8.0
 

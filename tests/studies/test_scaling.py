@@ -3,8 +3,8 @@
 import pandas as pd
 import pytest
 
-from bcre_studies import scaling as study
-from bcre_studies.claim import Verdict
+from bcre_studies.comparison.claim import Verdict
+from bcre_studies.performance import scaling as study
 
 
 def tables(ratios=((2.0, 1.5), (0.9, 0.8)), upwind=(4000.0, 300.0), pde=(50.0, 20.0)):

@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bcre_studies.scene import Scene, SceneError, built_in_names, load
-from bcre_studies.simulate import problem_of, run_automaton
+from bcre_studies.models.simulate import problem_of, run_automaton
+from bcre_studies.scenes.listing import built_in_names
+from bcre_studies.scenes.scene import Scene, SceneError, load
 
 SCENE = """
 title = "A pulse"

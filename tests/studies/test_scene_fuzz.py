@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import bcre_pde
-from bcre_studies import memory
+from bcre_studies.models.simulate import problem_of, rule_of
 from bcre_studies.robustness import fuzz
-from bcre_studies.run import require_runnable, run_scene
-from bcre_studies.scene import SceneError, load
-from bcre_studies.simulate import problem_of, rule_of
+from bcre_studies.running.run import require_runnable, run_scene
+from bcre_studies.scenes.scene import SceneError, load
+from bcre_studies.system import memory
 
 EACH = 180
 STEPS = 20

@@ -7,12 +7,13 @@ import pandas as pd
 import pytest
 
 import bcre_ca
-from bcre_studies import scene_needs
-from bcre_studies.claim import Verdict
-from bcre_studies.measuring import ablation, observables, smallest
-from bcre_studies.measuring.ablation import Model, Refused
-from bcre_studies.scene import load
-from bcre_studies.simulate import rule_of, run_automaton
+from bcre_studies.comparison.claim import Verdict
+from bcre_studies.models.simulate import rule_of, run_automaton
+from bcre_studies.observables import named as observables
+from bcre_studies.performance.scene_needs import ablation, smallest
+from bcre_studies.performance.scene_needs import study as scene_needs
+from bcre_studies.performance.scene_needs.ablation import Model, Refused
+from bcre_studies.scenes.scene import load
 
 
 @pytest.fixture(scope="module")

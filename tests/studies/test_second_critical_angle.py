@@ -5,17 +5,17 @@ import pytest
 
 import bcre_pde
 from bcre_ca.theory import second_critical_excess
-from bcre_studies import second_critical_angle
-from bcre_studies.claim import Verdict
-from bcre_studies.measuring.climb import Bracket, climb, threshold
-from bcre_studies.measuring.critical_slope import (
+from bcre_studies.comparison.claim import Verdict
+from bcre_studies.observables.outcome import Outcome
+from bcre_studies.validation.second_critical_angle import study as second_critical_angle
+from bcre_studies.validation.second_critical_angle.climb import Bracket, climb, threshold
+from bcre_studies.validation.second_critical_angle.critical_slope import (
     calibrated_rule,
     effective_for_growth,
     measure_sd_automaton,
     measure_sd_of,
     measure_sd_pde,
 )
-from bcre_studies.measuring.outcome import Outcome
 
 MATERIALS = [
     bcre_pde.Material(v=0.17, D=0.23, gamma=0.021, Sc=0.4),

@@ -9,8 +9,7 @@ import bcre_pde
 import bcre_pde.exact
 import bcre_pde.theory
 from bcre_ca import theory as ca_theory
-from bcre_studies.scene import load
-from bcre_studies.simulate import (
+from bcre_studies.models.simulate import (
     as_run,
     effective_problem_of,
     frame_times,
@@ -19,6 +18,7 @@ from bcre_studies.simulate import (
     rule_of,
     run_automaton,
 )
+from bcre_studies.scenes.scene import load
 
 
 def figure_2(**changes):

@@ -2,7 +2,7 @@ import gc
 
 import pytest
 
-from bcre_studies.speed import clock
+from bcre_studies.timing import clock
 
 
 class FakeTime:

@@ -10,8 +10,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from bcre_studies.speed import contest, fipy_solver
-from bcre_studies.speed.rivals import EndState
+from bcre_studies.performance.record import contest
+from bcre_studies.performance.rivals import fipy_solver
+from bcre_studies.performance.rivals.rivals import EndState
 
 WAVE = contest.WAVE
 IN_PROCESS = [
@@ -111,7 +112,7 @@ def test_contender_ends_in_finite_layers_that_have_moved_towards_the_truth(conte
 
 # py-pde compiles for a minute or so; the same Python, run as it stands, shows the same numbers.
 UNCOMPILED = """
-from bcre_studies.speed import contest
+from bcre_studies.performance.record import contest
 
 scene = contest.scenes()[contest.WAVE]
 for contender in contest.rivals():

@@ -5,10 +5,10 @@ from dataclasses import replace
 import pandas as pd
 import pytest
 
-from bcre_studies import speed_error as study
-from bcre_studies.claim import Verdict
-from bcre_studies.speed import contest
-from bcre_studies.speed.record import TARGETS
+from bcre_studies.comparison.claim import Verdict
+from bcre_studies.performance import speed_error as study
+from bcre_studies.performance.record import contest
+from bcre_studies.performance.record.record import TARGETS
 
 OURS, PDE = study.PAPERS, "PDE, RK45"
 CALIBRATED, LIMITED = study.BETTER

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from bcre_ca import Rule
-from bcre_studies.speed import machine, numpy_automaton
+from bcre_studies.performance.rivals import numpy_automaton
+from bcre_studies.timing import machine
 
 
 class Counted:

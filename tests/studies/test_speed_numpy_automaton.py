@@ -5,7 +5,7 @@ import pytest
 
 from bcre_ca import Rule, step
 from bcre_pde import Material, Problem
-from bcre_studies.speed import numpy_automaton
+from bcre_studies.performance.rivals import numpy_automaton
 
 
 @pytest.mark.parametrize("sign", ["consistent", "printed"])

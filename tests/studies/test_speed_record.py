@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bcre_studies.speed import contest, record
-from bcre_studies.speed.rivals import EndState
+from bcre_studies.performance.record import contest, record
+from bcre_studies.performance.rivals.rivals import EndState
 
 OURS = "automaton, upwind"
 

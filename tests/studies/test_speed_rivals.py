@@ -10,8 +10,8 @@ from scipy.optimize import OptimizeResult
 import bcre_pde
 from bcre_ca import Rule, evolve
 from bcre_pde import Material, Problem
-from bcre_studies.speed import fipy_solver, method_of_lines
-from bcre_studies.speed.rivals import centres
+from bcre_studies.performance.rivals import fipy_solver, method_of_lines
+from bcre_studies.performance.rivals.rivals import centres
 
 LENGTH = 20.0
 
@@ -43,7 +43,7 @@ UNCOMPILED = """
 import sys
 import numpy as np
 from bcre_pde import Material, Problem
-from bcre_studies.speed import pypde_expressions as expressions
+from bcre_studies.performance.rivals import pypde_expressions as expressions
 
 ends, kappa, until, cells, dt, tolerance, folder = sys.argv[1:]
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bcre_studies.speed import specialisation as study
+from bcre_studies.performance.record import specialisation as study
 
 
 @pytest.mark.parametrize("term", study.TERMS)

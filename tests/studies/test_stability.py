@@ -7,11 +7,16 @@ import pytest
 import bcre_ca
 from bcre_pde import Material
 from bcre_pde.fixed_step import take_fixed_steps
-from bcre_studies import stability
-from bcre_studies.claim import Verdict
-from bcre_studies.measuring import amplification, growth
-from bcre_studies.measuring.amplification import Numbers, rule_with, stable
-from bcre_studies.stability import CLIMB_AND_DRIFT, DRIFT_AND_SPREAD, VARIANTS, Case
+from bcre_studies.comparison.claim import Verdict
+from bcre_studies.verification.stability import amplification, growth
+from bcre_studies.verification.stability import study as stability
+from bcre_studies.verification.stability.amplification import Numbers, rule_with, stable
+from bcre_studies.verification.stability.study import (
+    CLIMB_AND_DRIFT,
+    DRIFT_AND_SPREAD,
+    VARIANTS,
+    Case,
+)
 
 CELLS, WAVES = 120, 7
 UPWIND, CALIBRATED, LIMITED, RIGHT, LEFT = VARIANTS

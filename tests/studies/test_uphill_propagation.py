@@ -9,11 +9,11 @@ import pytest
 import bcre_ca.theory
 import bcre_pde
 import bcre_pde.theory
-from bcre_studies import uphill_propagation
-from bcre_studies.claim import Verdict
-from bcre_studies.measuring import observe
-from bcre_studies.scene import load
-from bcre_studies.simulate import as_run, effective_problem_of, problem_of, run_automaton
+from bcre_studies.comparison.claim import Verdict
+from bcre_studies.models.simulate import as_run, effective_problem_of, problem_of, run_automaton
+from bcre_studies.observables import fronts as observe
+from bcre_studies.scenes.scene import load
+from bcre_studies.validation import uphill_propagation
 
 V, D, GAMMA = 0.17, 0.23, 0.021
 TIMES = [150.0, 300.0, 600.0]

@@ -19,12 +19,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from bcre_studies.report import pickles
+from bcre_studies.models.simulate import rule_of
 from bcre_studies.robustness import fuzz
 from bcre_studies.robustness.kills import Copy, Series, kill_in_turn
-from bcre_studies.run import require_runnable, run_scene
-from bcre_studies.scene import SceneError, load
-from bcre_studies.simulate import rule_of
+from bcre_studies.running.run import require_runnable, run_scene
+from bcre_studies.scenes.scene import SceneError, load
+from bcre_studies.system import pickles
 
 Row = dict[str, str]
 
@@ -44,7 +44,7 @@ KILLS = 4
 _WRITE = """
 import os, resource, signal, sys
 from pathlib import Path
-from bcre_studies.report.files import replace_bytes
+from bcre_studies.system.files import replace_bytes
 path, fault = Path(sys.argv[1]), sys.argv[2]
 if fault == "full":
     resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))

@@ -19,7 +19,7 @@ from pathlib import Path
 import bcre_ca
 import bcre_pde
 import bcre_studies
-from bcre_studies.report import pickles
+from bcre_studies.system import pickles
 
 QUICK = ("one_variable", "printed_rule")
 """Studies of a few seconds, with some cases each."""

@@ -1,1 +1,0 @@
-"""What ``bcre advise`` does: questions, pilots, candidates, the answer and its trial."""

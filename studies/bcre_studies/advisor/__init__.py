@@ -1,0 +1,1 @@
+"""What ``bcre advise`` does: the cheapest model that answers a scene."""

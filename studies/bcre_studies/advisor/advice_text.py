@@ -1,0 +1,152 @@
+"""What was advised, to be read and to be run."""
+
+from __future__ import annotations
+
+import math
+import shlex
+from collections.abc import Iterator
+from pathlib import Path
+
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import Progress
+
+from bcre_studies.advisor.advise import Advice, Effort, advise
+from bcre_studies.advisor.options import PRECISE, Option
+from bcre_studies.advisor.pilot import with_model
+from bcre_studies.advisor.question import Question
+from bcre_studies.advisor.scene_text import scene_text
+from bcre_studies.comparison.compare import significant
+from bcre_studies.running.run import COARSEST, require_runnable
+from bcre_studies.system.files import replace_text, require_writable
+from bcre_studies.timing.costs import recorded
+
+NAMES = {
+    "upwind": "automaton, upwind",
+    "calibrated": "automaton, calibrated",
+    "limited": "automaton, flux-limited",
+    "pde": "BCRE on py-pde",
+}
+
+
+def answer(question: Question, scene: str, path: Path) -> str:
+    """Advise with pilots timed on this machine, write the scene that is advised, and tell of both.
+
+    Parameters
+    ----------
+    scene: what the scene is called; path: of the file that is written.
+
+    Raises
+    ------
+    SceneError
+        where the scene cannot be run; OSError where the file cannot be written.
+    """
+    require_writable("--out", path.parent, (path.name,))
+    require_runnable(with_model(question.scene, "pde", COARSEST), "pde", question.frames)
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
+        task = progress.add_task("pilots", total=None)
+
+        def tell(pilot: str) -> None:
+            progress.update(task, description=escape(f"pilot: {pilot}"), advance=1)
+
+        advice = advise(question, Effort(recorded(), tell=tell))
+    write_advised(advice, path)
+    return text(advice, scene, path)
+
+
+def text(advice: Advice, scene: str, path: Path) -> str:
+    """The answer, a line for each thing.
+
+    Parameters
+    ----------
+    scene: what the scene is called; path: of the file that can be run.
+    """
+    return "\n".join(_lines(advice, scene, path))
+
+
+def write_advised(advice: Advice, path: Path) -> None:
+    """Write the scene on the advised model and cells, where there is one."""
+    if not advice.options:
+        return
+    best, question = advice.options[0], advice.question
+    advised = with_model(question.scene, best.model, best.cells)
+    comment = f"Advised for {question.observable}: {NAMES[best.model]}, {best.cells} cells."
+    replace_text(path, scene_text(advised, path.parent, comment))
+
+
+def _lines(advice: Advice, scene: str, path: Path) -> Iterator[str]:
+    question = advice.question
+    yield f"asked:          {scene}: {_asked(question)}"
+    if advice.closed is not None:
+        form, error = advice.closed
+        yield f"closed form:    {form.name}, error {_percent(error)}, at no cost: {form.formula}"
+    if not advice.options:
+        yield f"unresolved:     {advice.why}"
+    else:
+        yield from _recommended(advice, advice.options[0])
+    for place, option in enumerate(advice.options[1:]):
+        name = "runner-up:" if place == 0 else "left out:"
+        yield f"{name:16}{_option(option)}{_against(advice, option)}"
+    for model, why in advice.left_out.items():
+        yield f"left out:       {NAMES[model]}: {why}"
+    if math.isfinite(advice.reference_error):
+        known = f"its own error {_percent(advice.reference_error)}"
+        yield f"reference:      BCRE on {advice.reference_cells} cells, {known}"
+    yield f"pilots:         {advice.pilots_s:.2g} s"
+    if advice.options:
+        model = "pde" if advice.options[0].model == "pde" else "ca"
+        yield f"wrote:          {path}"
+        command = f"bcre run {shlex.quote(str(path))} --model {model}{_frames(question)}"
+        yield f"run it:         {command}"
+
+
+def _asked(question: Question) -> str:
+    what = f"{question.observable} at t = {question.scene.time.until:g}"
+    if question.budget is not None:
+        return f"{what} as near to BCRE as {_time(question.budget)} a frame allow"
+    return f"{what} within {_percent(question.tolerance)} of BCRE"
+
+
+def _recommended(advice: Advice, best: Option) -> Iterator[str]:
+    question = advice.question
+    yield f"recommended:    {_option(best)}"
+    until, length = question.scene.time.until, question.scene.domain.length
+    step = f"auto, {until / best.steps:.2g} on the average, {best.steps:.0f} steps"
+    yield f"cell and step:  d = {length / best.cells:.3g}; dt {step}"
+    yield f"predicted:      error {_percent(best.error)} +- {_percent(best.spread)}"
+    rate = (question.frames - 1) / best.seconds
+    took = f"{_time(best.seconds)} for {question.frames} frames"
+    yield f"                {took}, {_short(rate)} frames/s"
+    if question.budget is not None and best.error < PRECISE:
+        equal = f"errors below {_percent(PRECISE)} count as equal"
+        yield f"                {equal}: the cheapest of them"
+    if question.budget is not None and best.error + best.spread > question.tolerance:
+        yield f"                that may be more than {_percent(question.tolerance)}"
+
+
+def _option(option: Option) -> str:
+    return f"{NAMES[option.model]}, {option.cells} cells"
+
+
+def _against(advice: Advice, option: Option) -> str:
+    """What the option has against it."""
+    best = advice.options[0]
+    ratio = f"{_short(option.seconds / best.seconds)} times the time"
+    return f": error {_percent(option.error)}, {_time(option.seconds)}, {ratio}"
+
+
+def _frames(question: Question) -> str:
+    return "" if question.frames == 11 else f" --frames {question.frames}"
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.2g} %" if share >= 1e-5 else "below 0.001 %"
+
+
+def _time(seconds: float) -> str:
+    return f"{_short(1000 * seconds)} ms" if seconds < 1 else f"{_short(seconds)} s"
+
+
+def _short(value: float) -> str:
+    return f"{significant(value, 2):,g}" if value < 1e6 else f"{value:.1e}"

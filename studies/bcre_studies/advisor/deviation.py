@@ -1,0 +1,72 @@
+"""How far a run is from another of the same scene, in what a user wants of it.
+
+* ``R``: relative L1 difference of R at the end, at the centres of the run's own cells.
+* ``h``: that of what h has changed by since the start.
+* ``slope``, ``roughness``, ``front``, ``eroded``, ``reach``, ``top``: see
+  ``observables``, each over a scale that says what there is to see of it.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from bcre_pde import grid_convergence_index
+from bcre_studies.comparison.compare import sample
+from bcre_studies.models.simulate import Run
+from bcre_studies.observables import named as observables
+from bcre_studies.observables.named import Record
+from bcre_studies.scenes.domain import Array
+from bcre_studies.scenes.scene import Scene
+
+OBSERVABLES = ("R", "h", *(name for name in observables.NAMES if name != "R"))
+
+
+def posed(scene: Scene) -> tuple[str, ...]:
+    """Those of :data:`OBSERVABLES` that a scene poses; some need a slope with two ends."""
+    asked = {"h", *observables.posed(scene)}
+    return tuple(name for name in OBSERVABLES if name in asked)
+
+
+def deviation(run: Run, reference: Run, observable: str = "R") -> float:
+    """The error of ``run`` against ``reference``, dimensionless; both start at t = 0.
+
+    Infinite where there is nothing that it could be relative to.
+
+    Parameters
+    ----------
+    observable: one of :data:`OBSERVABLES`.
+    """
+    if observable not in ("R", "h"):
+        return observables.change(observable, _record(reference), _record(run))
+    profile = _rolling if observable == "R" else _change
+    scale = float(np.mean(np.abs(profile(reference, reference.x))))
+    gap = float(np.mean(np.abs(profile(run, run.x) - profile(reference, run.x))))
+    if gap == 0:
+        return 0.0
+    return gap / scale if scale > 0 and math.isfinite(gap) else math.inf
+
+
+def uncertainty(fine: Run, medium: Run, coarse: Run, observable: str = "R") -> float:
+    """Grid convergence index of the finest of three runs, each on twice the cells of the last.
+
+    Of the deviations between them, so in their unit; infinite where one of them is.
+    """
+    last = deviation(medium, fine, observable)
+    before = deviation(coarse, medium, observable)
+    if not (math.isfinite(last) and math.isfinite(before)):
+        return math.inf
+    return grid_convergence_index(0.0, last, last + before).error
+
+
+def _rolling(run: Run, x: Array) -> Array:
+    return sample(run, x, "R")
+
+
+def _change(run: Run, x: Array) -> Array:
+    return sample(run, x, "u") - sample(run, x, "u", frame=0)
+
+
+def _record(run: Run) -> Record:
+    return Record(run.scene, run.x, run.t, run.h, run.R)

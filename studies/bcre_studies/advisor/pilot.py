@@ -1,0 +1,268 @@
+r"""Short runs on coarse grids: a reference with its own error, and every model against it.
+
+All models are run on 25, 50, 100, ... cells. The reference is the finest pilot of BCRE on py-pde,
+refined until its grid convergence index (:mod:`bcre_pde.refine`) is small against the tolerance,
+or until its part of the allowance is spent. A model is piloted until it is known well enough.
+"""
+
+from __future__ import annotations
+
+import math
+import statistics
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+import bcre_pde
+from bcre_studies.advisor.candidate import SCHEMES, Candidate, Pilot
+from bcre_studies.advisor.deviation import deviation, uncertainty
+from bcre_studies.models.simulate import Run, as_run, problem_of, rule_of, run_automaton
+from bcre_studies.scenes.domain import Array
+from bcre_studies.scenes.scene import Scene
+from bcre_studies.scenes.terms import Gaussian
+from bcre_studies.timing.costs import Costs, closures_of
+
+COARSEST = 25
+LEAST_PILOTS = 3
+FINEST = 1600
+"""Cells of the coarsest pilot and of the finest; how many pilots there are at least."""
+
+REFERENCE_SHARE = 0.5
+"""Part of the allowance that the reference may take."""
+
+SHORT_S = 0.02
+"""Shorter pilots are run three times, for their time; the median counts."""
+
+SEEN = 0.8
+"""A grid sees the start if it sees this part of the ups and downs of both layers."""
+
+SHARP = 0.75
+"""A scarp: the largest fall of u from cell to cell stays by this part as the cells are halved."""
+
+
+class PilotError(ValueError):
+    """A model cannot be piloted; the text says why."""
+
+
+@dataclass
+class Allowance:
+    """Seconds that pilots may take, and cells of the automaton's finest.
+
+    ``clocked`` ones count as they were measured, the others as the costs have it, so that what is
+    concluded from them is the same on every machine. Compiling does not count.
+    """
+
+    seconds: float
+    costs: Costs
+    clocked: bool = True
+    finest: int = FINEST
+    spent: float = 0.0
+    tell: Callable[[str], object] = lambda _: None
+
+    def permits(self, expected: float, share: float = 1.0) -> bool:
+        """Whether so many seconds more stay within this share of the whole."""
+        return self.spent + expected <= share * self.seconds
+
+    def expected(self, scene: Scene, model: str, cells: int, steps: float, frames: int) -> float:
+        """Seconds of a run, by the costs."""
+        return self.costs.seconds(model, cells, steps, closures_of(scene), frames)
+
+    def take(self, scene: Scene, model: str, times: Sequence[float], cells: int) -> Run:
+        """Run a pilot and count what it takes.
+
+        Raises
+        ------
+        PilotError
+            where the model fails, or takes longer than all that is left.
+        """
+        self.tell(f"{model}, {cells} cells")
+        run = self._run(scene, model, times, cells)
+        if run.t.size < len(times):
+            raise PilotError(f"{cells} cells took more than the {self.seconds:.3g} s for pilots")
+        if not self.clocked:
+            self.spent += self.expected(scene, model, cells, run.steps, len(times) - 1)
+            return run
+        walls = [run.wall_s]
+        while len(walls) < 3 and run.wall_s < SHORT_S:
+            walls.append(run_model(scene, model, times, cells).wall_s)
+        self.spent += sum(walls)
+        return replace(run, wall_s=statistics.median(walls))
+
+    def _run(self, scene: Scene, model: str, times: Sequence[float], cells: int) -> Run:
+        end = time.perf_counter() + self.seconds - self.spent
+
+        def stop(_: object) -> bool:
+            return self.clocked and time.perf_counter() > end
+
+        try:
+            return run_model(scene, model, times, cells, stop)
+        except (ArithmeticError, ValueError, bcre_pde.SolveError) as failure:
+            raise PilotError(f"{cells} cells: {failure}") from None
+
+
+def with_model(scene: Scene, model: str, cells: int) -> Scene:
+    """The scene on so many cells of a model, the automaton with a step that follows its bounds."""
+    if model in SCHEMES:
+        return scene.with_changes(cells=cells, step="auto", scheme=model)
+    solver = {"solver.cells": cells, "solver.method": "runge-kutta", "solver.tolerance": 1e-6}
+    return scene.with_changes(**solver)
+
+
+def run_model(
+    scene: Scene,
+    model: str,
+    times: Sequence[float],
+    cells: int,
+    stop: Callable[[object], bool] | None = None,
+) -> Run:
+    """The scene in a model on so many cells, recorded at the given times."""
+    if model in SCHEMES:
+        return run_automaton(with_model(scene, model, cells), times, stop)
+    return as_run(scene, bcre_pde.solve(problem_of(scene), times, cells, stop=stop))
+
+
+def warm_up(scene: Scene, model: str) -> None:
+    """Compile what a model needs, so that no pilot is timed with it."""
+    run_model(scene, model, [0.0, 1e-9 * scene.time.until], COARSEST)
+
+
+def sees_start(scene: Scene, cells: int) -> bool:
+    """Whether the centres of so many cells see what stands at the start.
+
+    Grids that all miss a narrow pulse agree with each other on nothing. Compared are the total
+    variations of R and of u, with those on the finest grid's sixteenth cells and at every pulse.
+    """
+    pulses = [term.centre for term in scene.rolling if isinstance(term, Gaussian)]
+    every = np.sort(np.concatenate([scene.centres(16 * FINEST), pulses]))
+    inside = every[(every >= 0) & (every <= scene.domain.length)]
+    coarse, fine = (_variations(scene, x) for x in (scene.centres(cells), inside))
+    return bool((coarse >= SEEN * fine - 1e-12).all())
+
+
+def _variations(scene: Scene, x: Array) -> Array:
+    h, R = scene.initial(x)
+    u = h + scene.material.Sc * x
+    return np.array([np.abs(np.diff(layer)).sum() for layer in (u, R)])
+
+
+@dataclass(frozen=True)
+class Reference:
+    """Pilots of BCRE, coarsest first, and the relative error of the finest in what is observed."""
+
+    runs: tuple[Run, ...]
+    error: float
+
+    @property
+    def run(self) -> Run:
+        """The finest."""
+        return self.runs[-1]
+
+    @property
+    def has_scarp(self) -> bool:
+        """Whether at some time u falls over a single cell, whatever the cells: a jump."""
+        coarse, fine = (float(np.max(np.abs(np.diff(run.u, axis=1)))) for run in self.runs[-2:])
+        return fine > SHARP * coarse
+
+    def candidate(self, observable: str) -> Candidate:
+        """BCRE itself as one of the models; the error of its finest pilot is the reference's."""
+        errors = [deviation(run, self.run, observable) for run in self.runs[:-1]]
+        return Candidate("pde", _pilots(self.runs, [*errors, self.error]))
+
+
+def reference(
+    scene: Scene, times: Sequence[float], observable: str, wanted: float, allowance: Allowance
+) -> Reference:
+    """BCRE, refined until its relative error is ``wanted`` or its part of the allowance is spent.
+
+    Raises
+    ------
+    PilotError
+        where not even the coarsest grids can be solved in time.
+    """
+    runs: list[Run] = []
+    cells, error = COARSEST, math.inf
+    while cells <= FINEST and error > wanted:
+        steps = _next_steps(scene, "pde", runs, cells)
+        expected = allowance.expected(scene, "pde", cells, steps, len(times))
+        needed = len(runs) < LEAST_PILOTS
+        if not allowance.permits(expected, 1.0 if needed else REFERENCE_SHARE):
+            break
+        try:
+            runs.append(allowance.take(scene, "pde", times, cells))
+        except PilotError:
+            if needed:
+                raise
+            break
+        if len(runs) >= LEAST_PILOTS:
+            seen = sees_start(scene, cells)
+            error = uncertainty(runs[-1], runs[-2], runs[-3], observable) if seen else math.inf
+        cells *= 2
+    if len(runs) < LEAST_PILOTS:
+        raise PilotError(f"{cells} cells of BCRE would take about {expected:.2g} s")
+    return Reference(tuple(runs), error)
+
+
+def candidate(
+    scene: Scene,
+    model: str,
+    against: Reference,
+    times: Sequence[float],
+    observable: str,
+    enough: Callable[[Candidate], bool],
+    allowance: Allowance,
+    share: float,
+) -> Candidate:
+    """A scheme of the automaton on finer and finer cells, until ``enough`` is known of it.
+
+    Raises
+    ------
+    PilotError
+        where not even the coarsest grids can be run in time.
+    """
+    runs: list[Run] = []
+    errors: list[float] = []
+    cells = COARSEST
+    while cells <= allowance.finest:
+        steps = _next_steps(scene, model, runs, cells)
+        expected = allowance.expected(scene, model, cells, steps, len(times))
+        needed = len(runs) < LEAST_PILOTS
+        if not allowance.permits(expected, 1.0 if needed else share):
+            break
+        try:
+            runs.append(allowance.take(scene, model, times, cells))
+        except PilotError:
+            if needed:
+                raise
+            break
+        errors.append(deviation(runs[-1], against.run, observable))
+        if not needed and enough(_candidate(scene, model, runs, errors)):
+            break
+        cells *= 2
+    if len(runs) < LEAST_PILOTS:
+        raise PilotError(f"{cells} cells would take about {expected:.2g} s")
+    return _candidate(scene, model, runs, errors)
+
+
+def _candidate(scene: Scene, model: str, runs: Sequence[Run], errors: Sequence[float]) -> Candidate:
+    converges = model != "upwind" or scene.material.kappa == 0
+    return Candidate(model, _pilots(runs, errors), converges)
+
+
+def _pilots(runs: Sequence[Run], errors: Sequence[float]) -> tuple[Pilot, ...]:
+    pairs = zip(runs, errors, strict=True)
+    return tuple(Pilot(run.x.size, run.steps, run.wall_s, error) for run, error in pairs)
+
+
+def _next_steps(scene: Scene, model: str, runs: Sequence[Run], cells: int) -> float:
+    """Steps to be expected: by the bound at the start, or four times those on half the cells."""
+    if runs:
+        return 4.0 * runs[-1].steps
+    if model in SCHEMES:
+        return scene.time.until / rule_of(with_model(scene, model, cells)).dt
+    _, R = scene.initial(scene.centres(cells))
+    d = scene.domain.length / cells
+    return scene.time.until / bcre_pde.largest_explicit_step(
+        problem_of(scene).material, d, float(R.max())
+    )

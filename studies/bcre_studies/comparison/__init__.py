@@ -1,0 +1,1 @@
+"""Claims, verdicts, differences and errors."""

@@ -1,1 +1,0 @@
-"""What studies measure with: observed quantities, outcomes, closed forms beside them."""

@@ -1,0 +1,1 @@
+"""One adapter a model, behind one protocol and one registry."""

@@ -1,0 +1,1 @@
+"""Speed against error, scaling, what a scene needs, and the rivals."""

@@ -1,0 +1,1 @@
+"""The record of speed: what is timed, and against what."""

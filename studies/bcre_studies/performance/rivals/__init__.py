@@ -1,0 +1,1 @@
+"""What would be used instead of the automaton, one file a rival."""

@@ -1,0 +1,97 @@
+"""Speed by size, and against what the machine allows: the committed record, judged.
+
+Rates are cell-steps per second with sand rolling on all cells, from N = 1e2 to 1e7. The limits are
+measured in the same run: 7 additions a cell on data in the cache, and one pass over memory that
+reads and writes h and R. The real-time budget is the finest grid on which a figure of the paper is
+played at 60 frames a second, its 600 frames equally far apart.
+
+``make speed`` measures; what stands here is the record in ``reports/speed``, which names its
+machine. ``make reports`` measures the ratios of the machine at hand into ``reports/local``.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pandas as pd
+
+from bcre_studies.comparison.claim import Claim, Verdict
+from bcre_studies.performance.record.record import read
+from bcre_studies.reporting import style
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+READS_RECORD = True
+PAPERS_CELLS = 100
+"""Cells of d = 1, as in the paper, of a slope as long as our scenes of its figures."""
+
+WHY_RATIO = (
+    "each goal stands beside its ratio; the median over rounds in which both sides take turns, the "
+    "range over the rounds behind it"
+)
+
+
+def run() -> dict[str, pd.DataFrame]:
+    """The recorded ratios, rates by size, budget and first use."""
+    record = read()
+    return {
+        "comparison": record["ratios"],
+        **{name: record[name] for name in ("sizes", "budget", "first_use", "machine")},
+    }
+
+
+def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
+    """Every ratio against its goal; the pile that keeps 60 frames a second."""
+    ratios, budget = tables["comparison"], tables["budget"]
+    missed = ratios[ratios["median"] < ratios["goal"]]
+    shown = missed if len(missed) else ratios
+    papers = budget[budget["model"] == "automaton, upwind"]
+    least = papers.loc[papers["cells"].idxmin()]
+    pde = budget[budget["model"].str.startswith("PDE")]
+    told = ", ".join(f"{row.scene} {row.cells:.2g} cells" for row in papers.itertuples())
+    of_pde = ", ".join(f"{row.scene} {row.cells:.2g}" for row in pde.itertuples())
+    return [
+        Claim(
+            name="ratios",
+            statement="The compiled automaton is as fast as its goals say.",
+            verdict=Verdict.DISAGREE if len(missed) else Verdict.AGREE,
+            evidence=f"{len(ratios) - len(missed)} of {len(ratios)} ratios reach their goal: "
+            + "; ".join(
+                f"{row.ratio} {row.median:.3g} (goal {row.goal:.3g})" for row in shown.itertuples()
+            ),
+            tolerance=WHY_RATIO,
+        ),
+        Claim(
+            name="interactive",
+            statement="The paper's automaton plays the paper's figures at 60 frames a second.",
+            verdict=Verdict.AGREE if least["cells"] >= PAPERS_CELLS else Verdict.DISAGREE,
+            evidence=f"with up to {told}; BCRE's solver with up to {of_pde} cells",
+            tolerance=f"at least the {PAPERS_CELLS} cells of the scene in a sixtieth of a second, "
+            "one core, drawing not counted",
+        ),
+    ]
+
+
+def draw(tables: dict[str, pd.DataFrame]) -> Figure:
+    """Rates by size with the two limits; cells at 60 frames a second."""
+    sizes, budget = tables["sizes"], tables["budget"]
+    figure, (rates, frames) = style.panels(1, 2)
+    for (name, rows), marker in zip(sizes.groupby("model", sort=False), "ovDs.", strict=True):
+        rates.loglog(rows["cells"], rows["cell_steps_per_s"], marker=marker, label=name)
+    upwind = sizes[sizes["model"] == "upwind"]
+    for share, dashes, label in (
+        ("share_of_additions", (0, (5, 2)), "7 additions a cell"),
+        ("share_of_a_pass", (0, (1, 1.5)), "one pass over memory a step"),
+    ):
+        limit = upwind["cell_steps_per_s"] / upwind[share]
+        rates.loglog(upwind["cells"], limit, color="0.5", linestyle=dashes, label=label)
+    rates.set_xlabel("cells N")
+    rates.set_ylabel("cell-steps per second")
+    rates.legend(fontsize=7)
+    shown = budget.pivot_table(index="scene", columns="model", values="cells", sort=False)
+    shown.plot.bar(ax=frames, logy=True, rot=0, width=0.8)
+    frames.set_xlabel("")
+    frames.set_ylabel("cells at 60 frames a second")
+    frames.legend(fontsize=7)
+    return figure

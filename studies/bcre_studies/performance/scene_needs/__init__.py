@@ -1,0 +1,1 @@
+"""Study: which parts of the model a scene needs."""

@@ -1,0 +1,314 @@
+r"""A scene's automaton with some of its ingredients left out, and what a run of it costs.
+
+The full model is the automaton as the scene stands. Left out of it can be
+
+    D, v, gamma       the coefficient is 0
+    kappa             the curvature that the rule adds of its own, kappa_eff: calibrated away, while
+                      D is set to the full model's D_eff, so that nothing else changes
+    second layer      R is put on h, which the automaton of the height alone brings to rest
+                      (``height_only``)
+    nonlinearity      the exchange sees the slope of the start, E = gamma R (S(t = 0) - Sc)
+    half of the cells d is doubled, dt is not
+    half of the steps dt is doubled (of the largest stable step the scene's "auto" takes 0.8)
+    dry cells         a layer thinner than 1e-12 of the largest at the start comes to rest
+    double precision  arithmetic is in single precision
+
+and a model may stand on cells 2, 4 or 8 times as long in any scheme. The calibrated and the
+limited one are then given the full model's D_eff and kappa_eff as their D and kappa, so that they
+solve what it solves: to first order the automaton is BCRE with these.
+
+Cost is the number of cells stepped, times what a step of a cell takes in this scheme with these
+terms over what it takes in the full model, by the committed record of the costs
+(``speed.costs``, ``speed.specialisation``); where there is none a cell-step counts 1.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from itertools import pairwise
+from typing import Any
+
+import numba
+import numpy as np
+
+import bcre_ca
+from bcre_ca.kernels.driver import BLOCK, SEES
+from bcre_ca.rule import Ends, Scheme
+from bcre_studies.models.height_only import settled
+from bcre_studies.models.simulate import frame_times, rule_of
+from bcre_studies.observables.named import Record
+from bcre_studies.performance.record import specialisation
+from bcre_studies.scenes.domain import Array
+from bcre_studies.scenes.scene import Scene
+from bcre_studies.timing import costs
+
+D, V, GAMMA, KAPPA = "D", "v", "gamma", "kappa"
+LAYER, NONLINEARITY = "second layer", "nonlinearity"
+CELLS, STEPS, DRY, DOUBLE = (
+    "half of the cells",
+    "half of the steps",
+    "dry cells",
+    "double precision",
+)
+INGREDIENTS = (D, V, GAMMA, KAPPA, LAYER, NONLINEARITY, CELLS, STEPS, DRY, DOUBLE)
+
+DRY_PART = 1e-12
+MOST_HALVINGS = 60
+FRAMES = 21
+"""Recorded times, the start among them."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """The automaton without some of :data:`INGREDIENTS`.
+
+    ``coarser`` is the factor by which d is multiplied; ``auto`` lets the step follow its bounds
+    where the scene has a fixed one.
+    """
+
+    without: frozenset[str] = frozenset()
+    scheme: Scheme = "upwind"
+    coarser: int = 1
+    auto: bool = False
+
+    def __str__(self) -> str:
+        parts = [] if self.scheme == "upwind" else [f"{self.scheme} with D_eff, kappa_eff"]
+        parts += [f"cells {self.coarser} d"] if self.coarser > 1 else []
+        parts += ["step auto"] if self.auto else []
+        left = [name for name in INGREDIENTS if name in self.without]
+        parts += [f"without {', '.join(left)}"] if left else []
+        return "; ".join(parts) or "full"
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A run of a model, with the number of cells stepped and its cost in those of the full one."""
+
+    record: Record
+    cell_steps: float
+    cost: float
+
+
+class Refused(ArithmeticError):  # noqa: N818 - named for what happened
+    """The model cannot be run: its step is not stable."""
+
+
+def run(scene: Scene, model: Model) -> Trial:
+    """The scene in the model, at :data:`FRAMES` equally spaced times.
+
+    Raises
+    ------
+    Refused
+        where the step is not stable, at the start or later.
+    """
+    if LAYER in model.without:
+        return _of_height_alone(scene)
+    try:
+        if NONLINEARITY in model.without:
+            return _on_frozen_slope(scene, model)
+        return _stepped(scene, model)
+    except (bcre_ca.UnstableStep, FloatingPointError) as failure:
+        raise Refused(str(failure)) from None
+
+
+def changed_scene(scene: Scene, model: Model) -> Scene:
+    """The scene whose automaton is the model, but for a frozen slope or single precision."""
+    gone = {name: 0.0 for name in (D, V, GAMMA) if name in model.without}
+    reduced = scene.with_changes(**gone)
+    changes: dict[str, Any] = dict(gone)
+    if KAPPA in model.without or model.scheme != "upwind":
+        rule = rule_of(reduced)
+        R0 = float(scene.initial(scene.centres())[1].min())
+        changes["D"] = rule.effective_diffusion()
+        changes["kappa"] = 0.0 if KAPPA in model.without else rule.effective_curvature(R0)
+        changes["scheme"] = "calibrated" if model.scheme == "upwind" else model.scheme
+    coarser = model.coarser * (2 if CELLS in model.without else 1)
+    if coarser > 1:
+        changes["cells"] = scene.domain.cells // coarser
+    if STEPS in model.without:
+        changes["step"] = 2 * rule_of(reduced).dt
+    elif model.auto:
+        changes["step"] = "auto"
+    if DRY in model.without:
+        changes["dry"] = DRY_PART * float(scene.initial(scene.centres())[1].max())
+    return scene.with_changes(**changes)
+
+
+def _stepped(scene: Scene, model: Model) -> Trial:
+    changed = changed_scene(scene, model)
+    rule, ends = rule_of(changed), changed.domain.ends
+    start = bcre_ca.Pile(*changed.initial(changed.centres()))
+    times = recorded_times(scene)
+    single = DOUBLE in model.without
+    piles = list(
+        _in_single_precision(start, rule, times, changed)
+        if single
+        else bcre_ca.frames(start, rule, times, ends, changed.time.step)
+    )
+    steps = sum(
+        (after.steps - before.steps) * _stepped_cells(before.R) for before, after in pairwise(piles)
+    )
+    return Trial(_record(scene, changed, piles), steps, steps * _cost(changed, rule, single))
+
+
+def recorded_times(scene: Scene) -> list[float]:
+    """About :data:`FRAMES` times from 0 to the end, on whole steps where the scene has a fixed one.
+
+    A frame between two steps would be reached by a shorter one, which diffuses more.
+    """
+    times, step = frame_times(scene, FRAMES), scene.time.step
+    if step == "auto":
+        return times
+    return sorted({round(time / step) * step for time in times[:-1]} | {times[-1]})
+
+
+def _in_single_precision(
+    pile: bcre_ca.Pile, rule: bcre_ca.Rule, times: list[float], scene: Scene
+) -> Iterator[bcre_ca.Pile]:
+    """:func:`bcre_ca.frames` in single precision: the same steps, as long as rounding lets them."""
+    ends, fixed = scene.domain.ends, scene.time.step != "auto"
+    h, R = _single(pile.h), _single(pile.R)
+    for time in times:
+        steps, left = pile.steps, time - pile.t
+        while left > 1e-9 * time and R.any():
+            wanted = rule.dt if fixed else bcre_ca.MARGIN * _bound(h, R, rule, ends)
+            block = max(math.ceil(left / wanted * (1 - 1e-9)), 1)
+            if block > BLOCK:
+                block, dt = BLOCK, wanted
+            else:
+                dt = left / block
+            h, R, dt = _shortened(h, R, replace(rule, dt=dt), block, ends)
+            steps += block
+            left -= block * dt
+        pile = bcre_ca.Pile(h.astype(float), R.astype(float), time, 0.0, steps)
+        yield pile
+
+
+def _single(layer: Array) -> Any:
+    return layer.astype(np.float32)
+
+
+def _bound(h: Array, R: Array, rule: bcre_ca.Rule, ends: Ends) -> float:
+    pile = bcre_ca.Pile(h.astype(np.float64), R.astype(np.float64))
+    return bcre_ca.largest_stable_step(pile, rule, ends)
+
+
+def _shortened(
+    h: Array, R: Array, rule: bcre_ca.Rule, steps: int, ends: Ends
+) -> tuple[Array, Array, float]:
+    """A block of steps, in steps of half the length for as long as they are outgrown; their dt."""
+    for _ in range(MOST_HALVINGS):
+        try:
+            return *bcre_ca.evolve(h, R, rule, steps, ends), rule.dt
+        except (bcre_ca.UnstableStep, FloatingPointError):
+            rule = replace(rule, dt=rule.dt / 2)
+    raise Refused("no step is short enough in single precision")
+
+
+def _on_frozen_slope(scene: Scene, model: Model) -> Trial:
+    """E = gamma R (S(t = 0) - Sc); the step is the scene's, or 0.8 of the largest stable one."""
+    changed = changed_scene(scene, model)
+    if changed.automaton.scheme != "upwind":
+        raise Refused("the frozen slope stands for the upwind rule only")
+    h, R = changed.initial(changed.centres())
+    periodic = changed.domain.ends == "periodic"
+    rule = rule_of(changed)
+    pile = bcre_ca.Pile(h, np.zeros_like(R))  # without a layer no surface wave bounds the step
+    bound = bcre_ca.largest_stable_step(pile, rule, changed.domain.ends)
+    if changed.time.step == "auto":
+        rule = replace(rule, dt=min(bcre_ca.MARGIN * bound, changed.time.until))
+    rule.require_within(bound, 0.0)
+    K = rule.coefficients()
+    drop = h - np.append(h[1:], h[0] - rule.Sc * changed.domain.length if periodic else h[-1] - K.s)
+    piles = [bcre_ca.Pile(h, R)]
+    cell_steps = 0.0
+    for time in recorded_times(scene)[1:]:
+        before = piles[-1]
+        steps = math.ceil((time - before.t) / rule.dt * (1 - 1e-9))
+        K = replace(rule, dt=(time - before.t) / steps).coefficients()
+        cell_steps += steps * before.R.size
+        h, R = before.h.copy(), before.R.copy()
+        frozen_march(h, R, drop - K.s, K.c, K.b or 0.0, K.k, steps, periodic)
+        piles.append(bcre_ca.Pile(h, R, time, 0.0, before.steps + steps))
+    record = _record(scene, changed, piles)
+    return Trial(record, cell_steps, cell_steps * _cost(changed, rule, single=False))
+
+
+@numba.njit(cache=True, error_model="numpy")
+def frozen_march(h, R, drop, c, b, k, steps, periodic):  # type: ignore[no-untyped-def]
+    """The synchronous upwind rule in place, its exchange R k drop with a drop that stays."""
+    last = h.size - 1
+    for _ in range(steps):
+        first = R[0]
+        flux_in = (c + b) * R[last] - b * first if periodic else 0.0
+        for i in range(h.size):
+            if i < last:
+                flux_out = (c + b) * R[i] - b * R[i + 1]
+            else:
+                flux_out = (c + b) * R[i] - b * first if periodic else c * R[i]
+            exchange = R[i] * (k * drop[i])
+            h[i] -= exchange
+            R[i] += (flux_in - flux_out) + exchange
+            flux_in = flux_out
+
+
+def _of_height_alone(scene: Scene) -> Trial:
+    """R on h, settled; what a step of its cells takes counts as in the full model."""
+    x = scene.centres()
+    h, R = scene.initial(x)
+    end, steps = settled(h + R, scene.material.Sc * scene.d, scene.domain.ends == "periodic")
+    t = np.array([0.0, scene.time.until])
+    cell_steps = float(steps * x.size)
+    return Trial(Record(scene, x, t, np.array([h + R, end]), None), cell_steps, cell_steps)
+
+
+def _record(scene: Scene, changed: Scene, piles: list[bcre_ca.Pile]) -> Record:
+    h, R = (np.array([getattr(pile, name) for pile in piles]) for name in ("h", "R"))
+    return Record(scene, changed.centres(), np.array([pile.t for pile in piles]), h, R)
+
+
+def _stepped_cells(R: Array) -> int:
+    """Cells that a block of steps from R passes: the wet ones and as many about as it can reach."""
+    wet = np.flatnonzero(R)
+    if wet.size == 0:
+        return 0
+    around = BLOCK + SEES
+    return int(min(wet[-1] + 1 + around, R.size) - max(wet[0] - around, 0))
+
+
+def _cost(scene: Scene, rule: bcre_ca.Rule, single: bool) -> float:
+    """What a step of a cell costs in units of the upwind rule without closures, same cells."""
+    record = _costs()
+    if record is None:
+        return 1.0
+    closures = costs.closures_of(scene) if scene.automaton.scheme != "upwind" else "none"
+    cells = scene.domain.cells
+    own, plain = (
+        record.seconds(scheme, cells, 1.0, terms, frames=0)
+        for scheme, terms in ((rule.scheme, closures), ("upwind", "none"))
+    )
+    own *= _ratio("dry") if rule.dry > 0 else 1.0
+    own /= _ratio("D") if rule.D == 0 and scene.material.D > 0 else 1.0
+    return own / plain / (_ratio(specialisation.SINGLE) if single else 1.0)
+
+
+@lru_cache(maxsize=1)
+def _costs() -> costs.Costs | None:
+    try:
+        return costs.recorded()
+    except OSError:
+        return None
+
+
+@lru_cache
+def _ratio(term: str) -> float:
+    """The recorded gain of leaving a term out, on the fewer cells."""
+    try:
+        table = specialisation.recorded()
+    except OSError:
+        return 1.0
+    rows = table[table["term"] == term]
+    return float(rows.loc[rows["cells"].idxmin(), "ratio"]) if len(rows) else 1.0

@@ -1,0 +1,316 @@
+r"""Speed against error: what a cell-step, and what a second, buys in each model.
+
+Compared at the end of a scene are the relative L1 errors of R and of h (of what moved), the place
+of the downhill front and the mean slope, on grids twice as fine each, of the automaton with the
+paper's upwind rule, calibrated (D and kappa lessened by what the rule adds of its own) and
+flux-limited, and of BCRE by each method of its solver. The truth is the exact solution for the
+nonlinear wave, else BCRE on 400, 800 and 1600 cells with the error that their grid convergence
+index gives. Errors against cell-steps (of BCRE: cells times evaluations of the right-hand side) are
+the same on every machine and stand here.
+
+Seconds are those of the committed record (``reports/speed``, made by ``make speed`` on the machine
+that it names), where also what a user would pick instead takes part: the rule in plain NumPy,
+py-pde's expressions (on two scenes: they compile for half a minute a grid), SciPy's LSODA on the
+method of lines (its band holds for open ends only, on the nonlinear wave it has none), FiPy (a few
+coarse grids: a step takes a millisecond and more). All times of a scene come from one
+run in which all take turns; a time is the median of at least five rounds. Where the paper's rule
+reaches an error on no grid tried, its time is a lower bound, by first order from its finest grid:
+half the error takes at least twice the cells and four times the cell-steps.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from bcre_studies.comparison.claim import Claim, Verdict
+from bcre_studies.comparison.compare import significant
+from bcre_studies.performance.record import contest
+from bcre_studies.performance.record.record import TARGETS, cheapest, read
+from bcre_studies.reporting import style
+from bcre_studies.sweeps.each import each
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+READS_RECORD = True
+PAPERS = "automaton, upwind"
+BETTER = ("automaton, calibrated", "automaton, limited")
+TRUTH_SHARE = 0.1
+"""An error is told only down to where the truth's own is this part of it."""
+WHY_TIME = (
+    "a time is the shortest among the grids measured whose error of R is no more than the one "
+    "asked for; the models are told apart where the ratio of their medians in one run leaves 1"
+)
+
+
+def run() -> dict[str, pd.DataFrame]:
+    """Errors on every grid, and the fewest cell-steps that reach an error."""
+    cases = [(label, index) for label in contest.scenes() for index in range(len(contest.own()))]
+    rows = [row for rows in each(_errors_of, cases, "speed_error") for row in rows]
+    errors = pd.DataFrame(rows)
+    record = read()
+    return {
+        "comparison": fewest_cell_steps(errors),
+        "errors": errors,
+        **{f"recorded_{name}": record[name] for name in ("contest", "reach") if name in record},
+    }
+
+
+def _errors_of(case: tuple[str, int]) -> list[dict[str, Any]]:
+    label, index = case
+    contender, scene = contest.own()[index], contest.scenes()[label]
+    finest = contest.truth_of(scene).error / TRUTH_SHARE
+    rows = []
+    for cells, _, end in contest.rungs(contender, scene):
+        row = contest.row_of(label, contender, cells, end)
+        if row["error_R"] >= finest:
+            rows.append(
+                row
+                | {name: significant(value, 2) for name, value in row.items() if name in ERRORS}
+                | counted(row)
+            )
+    return rows
+
+
+ERRORS = ("error_R", "error_h", "error_front", "error_slope")
+
+
+def counted(row: dict[str, Any]) -> dict[str, Any]:
+    """Steps and cell-steps; of adaptive solvers two digits, since the last bits decide on them."""
+    return {name: int(significant(row[name], 2)) for name in ("steps", "cell_steps")}
+
+
+def fewest_cell_steps(errors: pd.DataFrame) -> pd.DataFrame:
+    """Per scene and contender, the fewest cell-steps that reach each error of R."""
+    rows = []
+    for (label, contender), group in errors.groupby(["scene", "contender"], sort=False):
+        row: dict[str, Any] = {"scene": label, "contender": contender}
+        for target in TARGETS:
+            best = cheapest(group, target, "cell_steps")
+            row[f"cell-steps to {_percent(target)}"] = (
+                "not reached" if best is None else f"{best['cell_steps']:.2g}"
+            )
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
+    """Where the automaton is the more efficient, and where the PDE is."""
+    claims = [_fewer_cell_steps(tables["errors"])]
+    if "recorded_reach" in tables:
+        seconds = tables["recorded_reach"]
+        claims = [_efficiency(seconds), _coarse(seconds), _improved(seconds), *claims]
+    return claims
+
+
+def _winners(seconds: pd.DataFrame, ours: tuple[str, ...]) -> list[dict[str, Any]]:
+    """Per scene and error: the best of ours against the best of BCRE's methods."""
+    rows = []
+    for (label, target), group in seconds.groupby(["scene", "error"], sort=False):
+        mine = group[group["contender"].isin(ours)]
+        pde = group[group["contender"].str.startswith("PDE")]
+        fastest = mine["seconds"].min() if len(mine) else math.inf
+        bound = group["automaton_s"].fillna(math.inf).iloc[0]
+        rows.append(
+            {
+                "scene": label,
+                "error": target,
+                "ours": fastest,
+                "pde": pde["seconds"].min() if len(pde) else math.inf,
+                "at_least": fastest if len(mine) else bound,
+            }
+        )
+    return rows
+
+
+def _won(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    return [row for row in rows if row["ours"] < row["pde"]]
+
+
+def _efficiency(seconds: pd.DataFrame) -> Claim:
+    papers, better = _winners(seconds, (PAPERS,)), _winners(seconds, BETTER)
+    won = _won(papers)
+    return Claim(
+        name="efficiency",
+        statement="At equal error the paper's automaton takes less time than BCRE's solver.",
+        verdict=Verdict.AGREE if len(won) == len(papers) else Verdict.DISAGREE,
+        evidence=f"{_where_it_wins(papers)}. {_where_the_pde_wins(papers)}. "
+        f"{_what_better_rules_win(better)}",
+        tolerance=WHY_TIME,
+    )
+
+
+def _where_it_wins(rows: list[dict[str, Any]]) -> str:
+    won = _won(rows)
+    coarse = [row for row in won if row["error"] == TARGETS[0]]
+    least, most = _span([row["pde"] / row["ours"] for row in coarse])
+    return (
+        f"the paper's automaton is the faster in {len(won)} of {len(rows)} pairs of scene and "
+        f"error; at 10 % in {len(coarse)} of {len({row['scene'] for row in rows})} scenes, by "
+        f"{least:.2g} to {most:.2g} times, and at 0.1 % in "
+        + (" and ".join(row["scene"] for row in won if row["error"] == TARGETS[-1]) or "none")
+    )
+
+
+def _where_the_pde_wins(rows: list[dict[str, Any]]) -> str:
+    lost = [row for row in rows if row["ours"] > row["pde"]]
+    told = [row for row in lost if math.isfinite(row["at_least"])]
+    never = sorted({row["scene"] for row in lost if math.isinf(row["at_least"])})
+    by = ", ".join(
+        f"{_percent(target)} by {least:.2g} to {most:.2g} times"
+        for target in TARGETS
+        for least, most in [_span([r["at_least"] / r["pde"] for r in told if r["error"] == target])]
+        if most > 0
+    )
+    sentence = f"BCRE's solver is the faster in {len(lost)}"
+    if by:
+        sentence += f": at {by}, or more where the automaton reached the error on no grid tried"
+    if never:
+        sentence += (
+            f"; the automaton never does in {' and '.join(never)}, where its error grows as its "
+            "cells, and with them its curvature, get smaller"
+        )
+    return sentence
+
+
+def _what_better_rules_win(rows: list[dict[str, Any]]) -> str:
+    down_to_1 = [row for row in rows if row["error"] >= 0.01]
+    finest = [row for row in rows if row["error"] == TARGETS[-1]]
+    won = _won(down_to_1)
+    least, most = _span([row["pde"] / row["ours"] for row in won])
+    return (
+        f"Calibrated or flux-limited, the automaton is the faster in {len(won)} of "
+        f"{len(down_to_1)} pairs down to 1 %, by {least:.2g} to {most:.2g} times, and in "
+        f"{len(_won(finest))} of {len(finest)} at 0.1 %"
+    )
+
+
+def _span(ratios: list[float]) -> tuple[float, float]:
+    return (min(ratios), max(ratios)) if ratios else (0.0, 0.0)
+
+
+def _percent(target: float) -> str:
+    return f"{100 * target:g} %"
+
+
+def _where(rows: list[dict[str, Any]], won: list[dict[str, Any]]) -> str:
+    told = [
+        f"{row['scene']} at {_percent(row['error'])} ({_ms(row['ours'])} against {_ms(row['pde'])})"
+        for row in won
+    ]
+    return f"the automaton is faster in {len(won)} of {len(rows)} cases: " + (
+        ", ".join(told) or "none"
+    )
+
+
+def _lost(row: dict[str, Any]) -> str:
+    mine = _ms(row["ours"])
+    if math.isinf(row["ours"]):
+        bound = row["at_least"]
+        mine = f"at least {_ms(bound)}" if math.isfinite(bound) else "never"
+    return f"{row['scene']} at {_percent(row['error'])}: {mine} against {_ms(row['pde'])}"
+
+
+def _ms(seconds: float) -> str:
+    if math.isinf(seconds):
+        return "not reached"
+    if seconds > 100:
+        return f"{seconds:.1g} s"
+    return f"{seconds:.2g} s" if seconds >= 1 else f"{1000 * seconds:.2g} ms"
+
+
+def _coarse(seconds: pd.DataFrame) -> Claim:
+    rows = [row for row in _winners(seconds, (PAPERS,)) if row["error"] == TARGETS[0]]
+    rows = [row for row in rows if math.isfinite(row["ours"])]
+    won = _won(rows)
+    return Claim(
+        name="efficiency at 10 %",
+        statement="Where an error of 10 % does and the paper's automaton reaches it, it is faster.",
+        verdict=Verdict.AGREE if rows and len(won) == len(rows) else Verdict.DISAGREE,
+        evidence=_where(rows, won),
+        tolerance=WHY_TIME,
+    )
+
+
+def _improved(seconds: pd.DataFrame) -> Claim:
+    rows = [row for row in _winners(seconds, BETTER) if row["error"] >= 0.01]
+    won = _won(rows)
+    return Claim(
+        name="efficiency, better rules",
+        statement="Down to 1 % the calibrated or the flux-limited automaton is faster than BCRE's "
+        "solver.",
+        verdict=Verdict.AGREE if len(won) == len(rows) else Verdict.DISAGREE,
+        evidence=_where(rows, won) + "".join(f"; {_lost(row)}" for row in rows if row not in won),
+        tolerance=WHY_TIME,
+    )
+
+
+def _fewer_cell_steps(errors: pd.DataFrame) -> Claim:
+    """Down to 1 %, in cell-steps, which are the same on every machine."""
+    told, fewer = [], []
+    for label, group in errors.groupby("scene", sort=False):
+        best = {
+            name: cheapest(group[group["contender"] == name], 0.01, "cell_steps")
+            for name in (PAPERS, *BETTER)
+        }
+        least = {name: math.inf if row is None else row["cell_steps"] for name, row in best.items()}
+        papers, better = least[PAPERS], min(least[name] for name in BETTER)
+        fewer.append(better < papers)
+        against = "on no grid tried" if math.isinf(papers) else f"against {papers:.2g}"
+        told.append(f"{label}: {better:.2g} {against}")
+    return Claim(
+        name="what better rules buy",
+        statement="The better of the calibrated and the flux-limited rule reaches 1 % in fewer "
+        "cell-steps than the paper's.",
+        verdict=Verdict.AGREE if all(fewer) else Verdict.DISAGREE,
+        evidence="; ".join(told),
+        tolerance="fewer cell-steps on the cheapest grid of error 1 % or less",
+    )
+
+
+LOOKS: dict[str, style.Look] = {
+    "automaton, upwind": {"color": "#b5480f", "linestyle": "-", "marker": "o"},
+    "automaton, calibrated": {"color": "#d99a1c", "linestyle": "-", "marker": "v"},
+    "automaton, limited": {"color": "#7b3f8c", "linestyle": "-", "marker": "D"},
+    "PDE, runge-kutta": {"color": "#1f5a99", "linestyle": "--", "marker": "s"},
+    "NumPy automaton": {"color": "#b5480f", "linestyle": ":", "marker": "."},
+    "SciPy LSODA, banded": {"color": "0.45", "linestyle": ":", "marker": "x"},
+    "py-pde expressions, central": {"color": "#3b8f5a", "linestyle": ":", "marker": "+"},
+    "FiPy": {"color": "0.7", "linestyle": ":", "marker": "1"},
+}
+
+
+def draw(tables: dict[str, pd.DataFrame]) -> Figure:
+    """Error of R against cell-steps, and against the recorded seconds, one column a scene."""
+    labels = list(dict.fromkeys(tables["errors"]["scene"]))
+    recorded = tables.get("recorded_contest")
+    figure, axes = style.panels(1 if recorded is None else 2, len(labels))
+    for axis, label in zip(axes, labels, strict=False):
+        _work_precision(axis, tables["errors"], label, "cell_steps", "cell-steps")
+        axis.set_title(label, loc="left")
+    if recorded is not None:
+        for axis, label in zip(axes[len(labels) :], labels, strict=True):
+            _work_precision(axis, recorded, label, "median_s", "seconds")
+    handles = {line.get_label(): line for axis in axes for line in axis.get_lines()}
+    figure.legend(
+        handles=[handles[name] for name in LOOKS if name in handles],
+        loc="outside lower center",
+        ncols=8,
+    )
+    return figure
+
+
+def _work_precision(axis: Axes, table: pd.DataFrame, label: str, cost: str, unit: str) -> None:
+    rows = table[table["scene"] == label]
+    for name, line in rows.groupby("contender", sort=False):
+        if name in LOOKS:
+            axis.loglog(line[cost], line["error_R"], label=name, **LOOKS[str(name)])
+    for target in TARGETS:
+        axis.axhline(target, color="0.8", linewidth=0.6, zorder=0)
+    axis.set_ylim(5e-5, 3)
+    axis.set_xlabel(unit)
+    axis.set_ylabel("L1 error of R")

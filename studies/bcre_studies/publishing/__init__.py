@@ -1,0 +1,1 @@
+"""Running the studies and writing ``reports/``."""

@@ -1,0 +1,1 @@
+"""Tables, figures and pages; nothing below this room knows it."""

@@ -1,0 +1,1 @@
+"""What ``bcre run`` does: one scene, one or both models, files."""

@@ -1,0 +1,1 @@
+"""Physical situations: domain, terms, tables, and the built-in files."""

@@ -1,0 +1,39 @@
+"""``[domain]``, and what every table of a scene file has in common."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
+Array = NDArray[np.float64]
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+
+
+class StrictTable(BaseModel):
+    """A table of a scene file: no unknown keys, no converted types."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+
+class Domain(StrictTable):
+    """``[domain]``: 0 <= x <= length; ``cells`` are the automaton's, d = length/cells."""
+
+    length: Positive
+    cells: Annotated[int, Field(ge=1, le=10_000_000)]
+    ends: Literal["open", "periodic"]
+
+    @property
+    def d(self) -> float:
+        """The automaton's cell length."""
+        return self.length / self.cells
+
+    def centres(self, cells: int | None = None) -> Array:
+        """Cell centres of the automaton, or of another grid on the same domain."""
+        count = cells or self.cells
+        return np.asarray((np.arange(count) + 0.5) * (self.length / count))

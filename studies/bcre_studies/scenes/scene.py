@@ -1,0 +1,329 @@
+"""A scene: one physical situation, described once and run in both models.
+
+Scenes are TOML files (built-in ones in ``built_in/``); lengths and times are in one consistent
+unit, x runs downhill. What a file may say is what the models below allow, and everything else is
+refused with a line that names the key, the value and what is allowed.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+import numpy as np
+from pydantic import Field, PrivateAttr, ValidationError, model_validator
+
+from bcre_studies.scenes.domain import Array, Domain, NonNegative, Positive, StrictTable
+from bcre_studies.scenes.listing import BUILT_IN, built_in_names
+from bcre_studies.scenes.tables import ProfileError
+from bcre_studies.scenes.terms import (
+    RollingTerm,
+    Sine,
+    SurfaceTerm,
+    TableRolling,
+    TableSurface,
+)
+from bcre_studies.system.memory import NotEnoughMemoryError
+from bcre_studies.system.one_line import one_line
+
+LONGEST = 100_000
+"""Bytes of a scene file; it is a page of text, long profiles belong into tables."""
+
+WIDEST = 1_000
+"""Characters of one of its lines; keys of very many parts would take hours to be read."""
+
+
+class SceneError(ValueError):
+    """A scene that cannot be run; its text is one line naming key, value and what is allowed."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(one_line(message))
+
+
+class SceneMaterial(StrictTable):
+    """``[material]``: the coefficients of both models.
+
+    kappa is BCRE's curvature term, which the paper's rule does not have and the calibrated and the
+    limited one take over; ``v_up`` makes the exchange that of thick flows.
+    """
+
+    v: NonNegative
+    D: NonNegative
+    gamma: NonNegative
+    Sc: NonNegative
+    kappa: NonNegative = 0.0
+    v_up: Positive | None = None
+
+
+class Automaton(StrictTable):
+    """``[automaton]``: its scheme, and the thickness below which a layer comes to rest."""
+
+    scheme: Literal["upwind", "calibrated", "limited"] = "upwind"
+    dry: NonNegative = 0.0
+
+
+class Time(StrictTable):
+    """``[time]``: from 0 to ``until``; ``step`` is the automaton's dt, or "auto"."""
+
+    until: Positive
+    step: Positive | Literal["auto"] = "auto"
+
+
+class Solver(StrictTable):
+    """``[solver]``: the PDE's grid and method; left out, it refines until its error is small."""
+
+    cells: Annotated[int, Field(ge=8, le=1_000_000)] | None = None
+    method: Literal["runge-kutta", "RK45", "DOP853", "LSODA", "BDF"] = "runge-kutta"
+    tolerance: Annotated[float, Field(gt=0, lt=1)] = 1e-6
+
+
+class Scene(StrictTable):
+    """A whole scene file."""
+
+    title: str
+    material: SceneMaterial
+    domain: Domain
+    time: Time
+    surface: tuple[SurfaceTerm, ...] = ()
+    rolling: tuple[RollingTerm, ...] = ()
+    automaton: Automaton = Automaton()
+    solver: Solver = Solver()
+    _folder: Path = PrivateAttr(default_factory=Path)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _lists_to_tuples(cls, data: Any) -> Any:
+        if isinstance(data, dict):
+            return {
+                key: tuple(value) if isinstance(value, list) else value
+                for key, value in data.items()
+            }
+        return data
+
+    @model_validator(mode="after")
+    def _fits_periodic_ends(self) -> Self:
+        if self.domain.ends == "open":
+            return self
+        for index, term in enumerate(self.surface):
+            if not isinstance(term, Sine):
+                continue
+            waves = self.domain.length / term.wavelength
+            if not 0.5 < waves < 1e9 or abs(waves - round(waves)) > 1e-9:
+                raise ValueError(
+                    f"surface.{index}.wavelength = {term.wavelength!r}: with periodic ends a whole "
+                    f"number of waves must fit into domain.length = {self.domain.length!r}"
+                )
+        has_table = any(term.kind == "table" for term in self.surface)
+        if not has_table and abs(self._untilted()) > 1e-12 * max(self.material.Sc, 1):
+            raise ValueError(
+                f"surface: the inclines add up to {self.material.Sc - self._untilted()!r}; "
+                f"with periodic ends it must be material.Sc = {self.material.Sc!r}"
+            )
+        return self
+
+    def _untilted(self) -> float:
+        """The slope by which the inclines fall short of Sc; tables are splined without it."""
+        inclines = sum(term.slope for term in self.surface if term.kind == "incline")
+        return self.material.Sc - inclines
+
+    @property
+    def d(self) -> float:
+        """The automaton's cell length."""
+        return self.domain.d
+
+    def centres(self, cells: int | None = None) -> Array:
+        """Cell centres of the automaton, or of another grid on the same domain."""
+        return self.domain.centres(cells)
+
+    def initial(self, x: Array) -> tuple[Array, Array]:
+        """h and R at positions x at t = 0, the same functions for every grid and model."""
+        h, R = np.zeros_like(x), np.zeros_like(x)
+        for surface in self.surface:
+            h += surface.height(x, self.domain)
+        for rolling in self.rolling:
+            R += rolling.layer(x, self.domain)
+        return h, R
+
+    def with_changes(self, **changes: Any) -> Scene:
+        """A copy with values replaced: ``with_changes(v=0.2, **{"rolling.0.width": 1.0})``."""
+        return override(self, changes)
+
+
+def load(source: str | Path, overrides: Sequence[str] = ()) -> Scene:
+    """The scene of a built-in name or a TOML file, with ``key=value`` overrides applied.
+
+    Raises
+    ------
+    SceneError
+        where the scene is not to be found or not allowed.
+    """
+    path = Path(source)
+    if str(source) in built_in_names():
+        path = BUILT_IN / f"{source}.toml"
+    text, folder = _read(path), path.parent
+    try:
+        data = tomllib.loads(text)
+    except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
+        raise SceneError(f"{source}: not a TOML file: {error}") from None
+    for assignment in overrides:
+        key, separator, value = assignment.partition("=")
+        if not separator:
+            raise SceneError(f"--set {assignment!r}: must be key=value")
+        _assign(data, key.strip(), _toml_value(value.strip()))
+    return _validated(data, folder)
+
+
+def override(scene: Scene, changes: Mapping[str, Any]) -> Scene:
+    """A copy of the scene with the values at the given keys replaced."""
+    data = scene.model_dump(exclude_unset=True, mode="json")
+    for key, value in changes.items():
+        _assign(data, key, value)
+    return _validated(data, scene._folder)
+
+
+SECTIONS: dict[str, type[StrictTable]] = {
+    "material": SceneMaterial,
+    "domain": Domain,
+    "time": Time,
+    "automaton": Automaton,
+    "solver": Solver,
+}
+
+
+def _assign(data: dict[str, Any], key: str, value: Any) -> None:
+    """Set ``material.v``, ``rolling.0.width`` or a bare ``v``; the first section with it wins."""
+    parts = key.split(".")
+    if len(parts) == 1 and key != "title":
+        section = next(
+            (name for name, model in SECTIONS.items() if key in model.model_fields), None
+        )
+        if section is None:
+            allowed = dict.fromkeys(
+                field for model in SECTIONS.values() for field in model.model_fields
+            )
+            raise SceneError(
+                f"{key} = {value!r}: no such key; allowed are {', '.join(allowed)}, "
+                "or a path such as rolling.0.width"
+            )
+        parts = [section, key]
+    place: Any = data
+    for part in parts[:-1]:
+        if isinstance(place, list):
+            if not (part.isascii() and part.isdigit()) or int(part) >= len(place):
+                raise SceneError(f"{key} = {value!r}: {part} must be one of 0..{len(place) - 1}")
+            place = place[int(part)]
+        elif isinstance(place, dict):
+            place = place.setdefault(part, {})
+        else:
+            raise SceneError(f"{key} = {value!r}: no such key")
+    if not isinstance(place, dict):
+        raise SceneError(f"{key} = {value!r}: no such key")
+    place[parts[-1]] = value
+
+
+def _toml_value(text: str) -> Any:
+    try:
+        parsed = tomllib.loads(f"value = {text}")
+    except (ValueError, RecursionError):
+        return text
+    return parsed["value"] if len(parsed) == 1 else text
+
+
+def _read(path: Path) -> str:
+    names = ", ".join(built_in_names())
+    try:
+        if not path.is_file():
+            raise SceneError(f"{path}: no such scene; must be a TOML file or one of {names}")
+        if path.stat().st_size > LONGEST:
+            raise SceneError(f"{path}: must be a TOML file of at most {LONGEST} bytes")
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        raise SceneError(f"{path}: must be UTF-8 text") from None
+    except OSError as error:
+        raise SceneError(f"{path}: cannot be read: {error.strerror}") from None
+    if max(map(len, text.splitlines()), default=0) > WIDEST:
+        raise SceneError(f"{path}: must be a TOML file with at most {WIDEST} characters a line")
+    return text
+
+
+def _validated(data: dict[str, Any], folder: Path) -> Scene:
+    _refuse_long_integers(data)
+    try:
+        scene = Scene.model_validate(data)
+    except ValidationError as failure:
+        raise SceneError(_first_of(failure)) from None
+    scene._folder = folder
+    try:
+        with np.errstate(over="raise", divide="raise", invalid="raise"):
+            _load_tables(scene)
+    except (ProfileError, NotEnoughMemoryError) as failure:
+        raise SceneError(str(failure)) from None
+    except FloatingPointError as failure:
+        raise SceneError(
+            f"material.Sc = {scene.material.Sc!r}: must be nearer to 1, the tables of this scene "
+            f"cannot be tilted by it and the inclines ({failure})"
+        ) from None
+    return scene
+
+
+def _load_tables(scene: Scene) -> None:
+    for index, surface in enumerate(scene.surface):
+        if isinstance(surface, TableSurface):
+            surface.load(f"surface.{index}", scene._folder, scene.domain, scene._untilted())
+    for index, rolling in enumerate(scene.rolling):
+        if isinstance(rolling, TableRolling):
+            rolling.load(f"rolling.{index}", scene._folder, scene.domain)
+
+
+def _refuse_long_integers(data: dict[str, Any]) -> None:
+    """Integers are of 64 bits in TOML; longer ones cannot even be shown."""
+    todo: list[tuple[str, Any]] = [("", data)]
+    while todo:
+        key, value = todo.pop()
+        if isinstance(value, dict):
+            todo += [(f"{key}.{name}", part) for name, part in value.items()]
+        elif isinstance(value, list):
+            todo += [(f"{key}.{index}", part) for index, part in enumerate(value)]
+        elif isinstance(value, int) and value.bit_length() > 63:
+            raise SceneError(
+                f"{key[1:]} = an integer of {value.bit_length()} bits: must be one of at most 63"
+            )
+
+
+def _first_of(failure: ValidationError) -> str:
+    errors = failure.errors()
+    # Of a choice (a number or "auto") every alternative reports; the first one speaks for all.
+    error = errors[0]
+    message = " ".join(error["msg"].removeprefix("Value error, ").split())
+    if error["type"] == "value_error":
+        return message
+    variants = {"incline", "sine", "noise", "table", "gaussian", "uniform"}
+    key = ".".join(str(part) for part in error["loc"] if part not in variants)
+    if error["loc"][-1:] == ("constrained-float",) or "literal" in str(error["loc"][-1]):
+        key = ".".join(str(part) for part in error["loc"][:-1])
+        message += " (or be 'auto')" if key.endswith("step") else ""
+    if error["type"] == "missing":
+        return f"{key}: missing; this key is required"
+    if error["type"].startswith("union_tag"):
+        kind = error["input"].get("kind") if isinstance(error["input"], dict) else error["input"]
+        surfaces = key.startswith("surface")
+        expected = (
+            "'incline', 'sine', 'noise', 'table'" if surfaces else "'gaussian', 'uniform', 'table'"
+        )
+        return f"{key}.kind = {_short(kind)}: must be one of {expected}"
+    if error["type"] == "extra_forbidden":
+        return f"{key} = {_short(error['input'])}: no such key is allowed here"
+    if error["type"] == "tuple_type":
+        return f"{key} = {_short(error['input'])}: must be a list of tables, [[{key}]]"
+    allowed = message.replace("Input should be", "must be")
+    return f"{key} = {_short(error['input'])}: {allowed}"
+
+
+def _short(value: object) -> str:
+    try:
+        text = repr(value)
+    except (RecursionError, ValueError):
+        return f"({type(value).__name__} too long or too deep to be shown)"
+    return text if len(text) <= 80 else f"{text[:77]}..."

@@ -1,1 +1,0 @@
-"""Measuring tools for speed: a clock, the machine itself, and what a user would pick instead."""

@@ -1,0 +1,1 @@
+"""Files, memory and text lines: what the machine gives."""

@@ -1,0 +1,1 @@
+"""What sand does: the paper's observations in the automaton and in BCRE."""

@@ -1,0 +1,1 @@
+"""Study: does a slope return to the angle of repose?"""

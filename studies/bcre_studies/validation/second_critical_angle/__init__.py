@@ -1,0 +1,1 @@
+"""Study: the second critical angle of both models."""

@@ -1,0 +1,117 @@
+r"""Does a pulse near the foot climb to the top of figure 1's slope, and from which slope on?
+
+The scene is figure 1 (v = 0.1, D = 0.1, gamma = 0.01, Sc = 0.5, L = 100) with a pulse of any
+amplitude, width 3, at x = 85 on any incline S0, until t = 3000. The threshold of a pulse is the
+lowest S0 from which on the outcome is not ``no`` (``outcome``).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+import bcre_pde
+from bcre_studies.models.simulate import (
+    as_run,
+    effective_problem_of,
+    problem_of,
+    run_automaton,
+)
+from bcre_studies.observables.outcome import Outcome, decided, outcome
+from bcre_studies.scenes.scene import Scene, load
+
+CENTRE = 85.0
+UNTIL = 3000.0
+TIMES = [float(t) for t in np.linspace(0.0, UNTIL, 61)]
+
+SOLVER_TOLERANCE = 1e-4
+"""Local error per step: the steps are bounded by stability, the outcome is one of three words."""
+
+WIDTH = 1.008
+"""A threshold is bracketed to this ratio: half of it, 0.4 %, is under a tenth of the tolerance."""
+
+
+def pulse_scene(excess: float, pulse: float) -> Scene:
+    """Figure 1 with S0 = Sc + ``excess`` and a pulse of that amplitude, run long enough."""
+    scene = load("figure1")
+    slope = scene.material.Sc + excess
+    return scene.with_changes(
+        until=UNTIL,
+        **{"surface.0.slope": slope, "rolling.0.amplitude": pulse},
+        **{"rolling.0.centre": CENTRE},
+    )
+
+
+def climb(model: str, cells: int, excess: float, pulse: float) -> Outcome:
+    """What becomes of the pulse.
+
+    Parameters
+    ----------
+    model: ``"ca"``, ``"pde"`` or ``"pde effective"`` (:func:`effective_problem`).
+    cells: the grid; 100 cells are d = 1.
+    excess: S0 - Sc.
+    pulse: amplitude, a length.
+    """
+    scene = pulse_scene(excess, pulse)
+    if model == "ca":
+        return outcome(run_automaton(scene.with_changes(cells=cells), TIMES, decided), CENTRE)
+    problem = effective_problem(scene) if model == "pde effective" else problem_of(scene)
+    solution = bcre_pde.solve(problem, TIMES, cells, tolerance=SOLVER_TOLERANCE, stop=decided)
+    return outcome(as_run(scene, solution), CENTRE)
+
+
+def effective_problem(scene: Scene) -> bcre_pde.Problem:
+    """BCRE with the automaton's D_eff = 0.145, kappa_eff = 0.005 of the paper's d = dt = 1."""
+    return effective_problem_of(scene.with_changes(cells=100, step=1.0))
+
+
+@dataclass(frozen=True)
+class Bracket:
+    """The threshold: the pulse does not climb at ``low``, and does at ``high``."""
+
+    low: float
+    high: float
+
+    @property
+    def value(self) -> float:
+        """Middle of the bracket."""
+        return (self.low + self.high) / 2
+
+    @property
+    def error(self) -> float:
+        """Half of its width."""
+        return (self.high - self.low) / 2
+
+
+def threshold(model: str, grids: tuple[int, ...], pulse: float, within: Bracket) -> Bracket:
+    """S0 - Sc from which on the pulse climbs: a bracket that holds on every grid.
+
+    Bisected on the first grid; where it does not hold on a further one it is widened until it does.
+    """
+
+    def climbs_on(cells: int) -> Callable[[float], bool]:
+        return lambda excess: climb(model, cells, excess, pulse).climbs
+
+    low, high = _widened(climbs_on(grids[0]), within.low, within.high)
+    low, high = _bisected(climbs_on(grids[0]), low, high)
+    for cells in grids[1:]:
+        low, high = _widened(climbs_on(cells), low, high)
+    return Bracket(low, high)
+
+
+def _bisected(climbs: Callable[[float], bool], low: float, high: float) -> tuple[float, float]:
+    while high > WIDTH * low:
+        middle = math.sqrt(low * high)
+        low, high = (low, middle) if climbs(middle) else (middle, high)
+    return low, high
+
+
+def _widened(climbs: Callable[[float], bool], low: float, high: float) -> tuple[float, float]:
+    while climbs(low):
+        low /= WIDTH
+    while not climbs(high):
+        high *= WIDTH
+    return low, high

@@ -1,0 +1,1 @@
+"""Is it computed right: orders of accuracy, stability, hard cases."""

@@ -1,0 +1,1 @@
+"""Study: what each model does at its limits."""

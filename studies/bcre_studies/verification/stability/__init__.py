@@ -1,0 +1,1 @@
+"""Study: where each time step becomes unstable."""

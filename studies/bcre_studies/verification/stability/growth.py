@@ -1,0 +1,136 @@
+"""Whether a small rough disturbance of a uniform layer grows, measured by stepping either model.
+
+The layer is 1 on the repose line of a small periodic pile, d = dt = 1; R and u are disturbed by
+seeded noise of 1e-8. It grows where, after the steps, the largest deviation is more than twice that
+at the start and a fifth more than half-way, or :data:`FAR` times that at the start: where a wave
+of R and one of u have nearly the same factor, the one drives the other for a while in a stable step
+too, but not so far.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numba
+import numpy as np
+
+import bcre_ca
+import bcre_pde
+from bcre_ca import kernels
+from bcre_pde import fluxes
+from bcre_pde.explicit import ExplicitMethod, tableau, weighted_sum
+from bcre_studies.scenes.domain import Array
+from bcre_studies.verification.stability.amplification import Numbers, Variant, rule_with
+
+SIZE = 1e-8
+"""Small enough for products of waves not to count, large enough for rounding not to."""
+
+FAR = 1e4
+
+STEPS = 600
+CELLS = 32
+CELLS_IN_PLACE = 96
+"""Of the automaton. What grows along a sweep by 1 + e a cell needs a long row."""
+
+PDE = (32, 200)
+"""Cells and steps; its factors pass 1 steeply."""
+
+
+@cache
+def noise(cells: int) -> tuple[Array, Array]:
+    """Deviations of u and R at the start: uniform in (-1, 1) times SIZE, of mean zero."""
+    layers = SIZE * np.random.default_rng(2024).uniform(-1, 1, (2, cells))
+    u, R = layers - layers.mean(axis=1, keepdims=True)
+    return u, R
+
+
+def automaton_grows(numbers: Numbers, variant: Variant) -> bool:
+    """Whether it grows in the automaton with these numbers."""
+    rule = rule_with(numbers, variant)
+    cells = CELLS if rule.order == "synchronous" else CELLS_IN_PLACE
+    u, disturbance = noise(cells)
+    steady = _steady_layer(rule, cells)
+    h, R = u.copy(), steady + disturbance
+
+    def deviation() -> float:
+        kernels.march(h, R, rule, STEPS // 2, "periodic")
+        return _largest(h, R - steady)
+
+    with np.errstate(all="ignore"):
+        return _grows(_largest(u, disturbance), deviation(), deviation())
+
+
+def _steady_layer(rule: bcre_ca.Rule, cells: int) -> Array:
+    """The layer of 1 that drift and diffusion leave as it is.
+
+    A sweep begins in cell 0 or ends there, which therefore holds one flux f more than the others
+    between two sweeps, or one less: f = c/(1 - q) downhill, c/(1 - b) uphill.
+    """
+    folded = rule.coefficients()
+    c, b, q = folded.c, folded.b or 0.0, folded.q
+    layer = np.ones(cells)
+    if rule.order == "right" and q < 1:
+        layer[0] += c / (1 - q)
+    if rule.order == "left" and b < 1:
+        layer[0] -= c / (1 - b)
+    return layer
+
+
+def pde_grows(numbers: Numbers, method: ExplicitMethod) -> bool:
+    """Whether it grows in BCRE with fixed steps of an explicit method, dx in the place of d."""
+    cells, steps = PDE
+    v, D, gamma = numbers
+    a, b, _ = tableau(method)
+    u, R = noise(cells)
+    layers = np.array([u, 1 + R, np.zeros(cells)])
+    march = _pde_march(_digest())
+
+    def deviation() -> float:
+        march(layers, v, D, gamma, a, b, steps // 2)
+        return _largest(layers[0], layers[1] - 1)
+
+    with np.errstate(all="ignore"):
+        return _grows(_largest(u, R), deviation(), deviation())
+
+
+def _largest(u: Array, R: Array) -> float:
+    return float(np.maximum(np.abs(u).max(), np.abs(R).max()))  # NaN if either is
+
+
+def _grows(start: float, half_way: float, end: float) -> bool:
+    return not end <= max(min(1.2 * half_way, FAR * start), 2 * start)
+
+
+@cache
+def _digest() -> str:
+    """Of the sources that the march below is compiled from; it is kept on disk under this key."""
+    folder = Path(bcre_pde.__file__).parent
+    texts = [(folder / name).read_bytes() for name in ("exchange.py", "explicit.py", "fluxes.py")]
+    return hashlib.sha256(b"".join(texts)).hexdigest()
+
+
+@cache
+def _pde_march(sources: str) -> Callable[..., Any]:
+    """:func:`bcre_pde.fixed_step.take_fixed_steps` in one call, for thousands of short marches."""
+
+    @numba.njit(cache=True, error_model="numpy")
+    def march(layers, v, D, gamma, a, b, steps):  # type: ignore[no-untyped-def]
+        sources  # noqa: B018
+        stages, cells = b.size, layers.shape[1]
+        rates, stage, new = np.empty((stages, 3, cells)), np.empty((3, cells)), np.empty((3, cells))
+        padded, faces = np.empty((2, cells + 2 * fluxes.GHOSTS)), np.empty((2, cells + 1))
+        for _ in range(steps):
+            for i in range(stages):
+                weighted_sum(layers, rates, a[i], i, 1.0, stage)
+                fluxes.rate(stage, rates[i], padded, faces, v, D, gamma, None, 1.0, True, None)
+            weighted_sum(layers, rates, b, stages, 1.0, new)
+            layers[:, :] = new
+            if not np.abs(new[1, 0]) < 1e9:
+                layers[:, :] = np.nan
+                return
+
+    return march  # type: ignore[no-any-return]
