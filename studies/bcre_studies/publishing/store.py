@@ -1,9 +1,9 @@
 """Results that need not be computed twice.
 
 The tables of a study are kept under a key of everything that they depend on: the study, all that
-it imports, the scenes, and the versions of the libraries (:mod:`bcre_studies.system.sources`). A file that is damaged or half-written fails its digest and is redone.
-While a study is being measured a folder of that name keeps its finished cases, and a second run
-waits for the first.
+it imports, the scenes, and the versions of the libraries (:mod:`bcre_studies.system.sources`). A
+file that is damaged or half-written fails its digest and is measured again. While a study is being
+measured a folder of that name keeps its finished cases, and a second run waits for the first.
 """
 
 from __future__ import annotations
