@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from pde import FieldCollection
 from pde.solvers import RungeKuttaSolver
 
-from bcre_pde.equation import BCRE
-from bcre_pde.explicit import FEHLBERG, FEHLBERG_ERROR, Step, weighted_sum
+from bcre_pde.explicit import FEHLBERG, FEHLBERG_ERROR, Step
+from bcre_pde.marched import Marched
 
 Array = NDArray[np.float64]
 
@@ -33,19 +33,19 @@ class BoundedRungeKutta(RungeKuttaSolver):  # type: ignore[misc]
 
     name = "bounded runge-kutta"
 
-    def __init__(self, pde: BCRE, *, dt_max: float, dt_min: float, **options: Any) -> None:
+    def __init__(self, pde: Marched, *, dt_max: float, dt_min: float, **options: Any) -> None:
         super().__init__(pde, adaptive=True, **options)
         self.dt_max = dt_max
         self.dt_min = dt_min
 
     def _make_single_step_error_estimate(self, state: FieldCollection) -> Callable[..., Any]:
         step = Step(self.pde, FEHLBERG)
-        new, error, nothing = (np.empty_like(state.data) for _ in range(3))
-        nothing[...] = 0.0
+        new, error, nothing = (np.zeros_like(state.data) for _ in range(3))
+        add = self.pde.weighted_sum
 
         def relative_single_step(data: Array, t: float, dt: float) -> tuple[Array, float]:
             step(data, t, dt, new)
-            weighted_sum(nothing, step.increments, FEHLBERG_ERROR, FEHLBERG_ERROR.size, 1.0, error)
+            add(nothing, step.increments, FEHLBERG_ERROR, FEHLBERG_ERROR.size, 1.0, error)
             return new, float(np.abs(error, out=error).max()) / layer_scale(new[1])
 
         return relative_single_step

@@ -14,10 +14,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from pde import CartesianGrid, FieldCollection, PDEBase, ScalarField
+from pde import CartesianGrid, FieldCollection, ScalarField
 
 from bcre_pde import fluxes
 from bcre_pde.exchange import exchanging
+from bcre_pde.marched import Marched
 
 Array = NDArray[np.float64]
 
@@ -64,7 +65,7 @@ class Material:
             raise ValueError(f"v_up = {self.v_up!r}: must be > 0")
 
 
-class BCRE(PDEBase):  # type: ignore[misc]
+class BCRE(Marched):
     """BCRE on a line; the state holds the fields u, R and "ends".
 
     The third field serves open ends: its first cell is u on the foot, its last one the outflow so
@@ -78,23 +79,15 @@ class BCRE(PDEBase):  # type: ignore[misc]
     most_evaluations: how often the right-hand side may be evaluated.
     """
 
-    explicit_time_dependence = False
-
     def __init__(
         self, material: Material, grid: CartesianGrid, most_evaluations: float = math.inf
     ) -> None:
-        super().__init__()
         (cells,) = grid.shape
         if cells < fluxes.SMALLEST_GRID:
             raise ValueError(f"cells = {cells}: BCRE needs at least {fluxes.SMALLEST_GRID} cells")
+        super().__init__(self.state(grid, np.zeros(cells), np.zeros(cells)), most_evaluations)
         self.material = material
         self.dx = float(grid.discretization[0])
-        self.evaluations = 0
-        self.most_evaluations = most_evaluations
-        self.last_time = 0.0
-        self._layers = np.zeros((3, cells))
-        self.last_layers = self._layers
-        self._rate = self.state(grid, np.zeros(cells), np.zeros(cells))
         self._scratch = np.empty((2, cells + 2 * fluxes.GHOSTS)), np.empty((2, cells + 1))
         self._coefficients = (
             material.v,
@@ -117,37 +110,17 @@ class BCRE(PDEBase):  # type: ignore[misc]
             [ScalarField(grid, row, label=name) for name, row in zip(names, rows, strict=True)]
         )
 
-    def evolution_rate(self, state: FieldCollection, t: float = 0) -> FieldCollection:
-        """The right-hand side, in one field that every call overwrites (py-pde copies it)."""
-        np.copyto(self._layers, state.data)  # SciPy's memory may not last until a failure is told
-        self.write_rate(self._layers, self._rate.data, t)
-        return self._rate
-
-    def write_rate(self, layers: Array, out: Array, t: float = 0) -> None:
-        """Write the time derivative of the rows u, R and ends, shape (3, N), into ``out``.
-
-        Raises
-        ------
-        RuntimeError
-            where it has been asked for more often than ``most_evaluations``.
-        """
-        self.evaluations += 1
-        self.last_time = t
-        self.last_layers = layers
-        if self.evaluations > self.most_evaluations:
-            raise RuntimeError(
-                f"the right-hand side was evaluated {self.most_evaluations:.6g} times, the most "
-                "that is allowed"
-            )
-        self.rate(layers, out)
-
     def rate(self, layers: Array, out: Array) -> None:
-        """:meth:`write_rate`, not counted."""
+        """Write the time derivative of the rows u, R and ends, shape (3, N), into ``out``."""
         fluxes.rate(layers, out, *self._scratch, *self._coefficients)
 
     def largest_explicit_step(self, largest_R: float) -> float:
         """:func:`largest_explicit_step` on this grid."""
         return largest_explicit_step(self.material, self.dx, largest_R)
+
+    def place(self, cell: int) -> str:
+        """Its x."""
+        return f"x = {(cell + 0.5) * self.dx:.6g}"
 
 
 def largest_explicit_step(material: Material, dx: float, largest_R: float) -> float:
