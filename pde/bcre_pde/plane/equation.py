@@ -92,9 +92,10 @@ class BCRE(Marched):
 
     def compile(self, state: FieldCollection) -> None:
         """Compile what a march calls, or load it from disk; counts as nothing."""
-        terms = np.zeros((1, *state.data.shape))
-        self.rate(state.data, terms[0])
-        self.weighted_sum(state.data, terms, np.zeros(1), 1, 0.0, self._layers)
+        layers = np.array(state.data)
+        terms = np.zeros((1, *layers.shape))
+        self.rate(layers, terms[0])
+        self.weighted_sum(layers, terms, np.zeros(1), 1, 0.0, np.zeros_like(layers))
 
     def largest_explicit_step(self, largest_R: float) -> float:
         """The bound of the line, with what spreads along and across added up."""
