@@ -48,7 +48,7 @@ def _pad(row, padded, joined):  # type: ignore[no-untyped-def]
 
 @_compiled
 def _spread(R, D, dy, joined, padded, flux, R_rate):  # type: ignore[no-untyped-def]
-    if D is None:
+    if D == 0.0:
         return
     _pad(R, padded, joined)
     spread = D / (180 * dy)

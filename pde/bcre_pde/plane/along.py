@@ -33,13 +33,13 @@ def faces(u, R, f, K, flux, face):  # type: ignore[no-untyped-def]
 @_compiled
 def _rolling_fluxes(R, f, v, D, dx, flux):  # type: ignore[no-untyped-def]
     n = R.shape[0]
-    spread = None if D is None else D / (180 * dx)
+    spread = D / (180 * dx)
     R0, R1, R2, R3 = R[f - 3], R[f - 2], R[f - 1], R[f % n]
     R4, R5 = R[(f + 1) % n], R[(f + 2) % n]
     for j in range(flux.size):
         carried = _face_value(R0[j], R1[j], R2[j], R3[j], R4[j])
         difference = 245 * (R3[j] - R2[j]) - 25 * (R4[j] - R1[j]) + 2 * (R5[j] - R0[j])
-        flux[j] = v * carried if spread is None else v * carried - spread * difference
+        flux[j] = v * carried - spread * difference
 
 
 @_compiled
@@ -96,11 +96,10 @@ def rates_at_open_ends(layers, K, rates):  # type: ignore[no-untyped-def]
     flux, inner = np.empty(n + 1), np.empty((2, columns))
     _rolling_fluxes(layers[1], 3, K.v, K.D_x, K.dx, inner[0])
     _rolling_fluxes(layers[1], n - 3, K.v, K.D_x, K.dx, inner[1])
-    spread = 0.0 if K.D_x is None else K.D_x
     for j in range(columns):
         u, R, foot = layers[0, :, j], layers[1, :, j], layers[2, 0, j]
         flux[3], flux[n - 3] = inner[0, j], inner[1, j]
-        line._rolling_flux_at_open_ends(R, flux, K.v, spread, K.dx, n)
+        line._rolling_flux_at_open_ends(R, flux, K.v, K.D_x, K.dx, n)
         line._change_at_open_ends(
             u, R, flux, rates[:, :, j], K.gamma, K.kappa_x, K.dx, n, foot, K.saturation
         )

@@ -32,11 +32,14 @@ _compiled = numba.njit(error_model="numpy")
 
 
 class Coefficients(NamedTuple):
-    """Material and grid as the compiled code takes them; None leaves a term out of it."""
+    """Material and grid as the compiled code takes them; None leaves a term out of it.
+
+    The curvature terms come both or not at all, so that there is little to compile.
+    """
 
     v: float
-    D_x: float | None
-    D_y: float | None
+    D_x: float
+    D_y: float
     gamma: float
     kappa_x: float | None
     kappa_y: float | None

@@ -52,6 +52,4 @@ class Material:
     @classmethod
     def isotropic(cls, line: Line) -> Material:
         """Equal diffusion and curvature terms along and across."""
-        return cls(
-            line.v, line.D, line.D, line.gamma, line.Sc, line.kappa, line.kappa, line.v_up
-        )
+        return cls(line.v, line.D, line.D, line.gamma, line.Sc, line.kappa, line.kappa, line.v_up)

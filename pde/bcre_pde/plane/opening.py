@@ -39,17 +39,15 @@ def passed_in_all(frames: Iterable[Frame]) -> Array:
     The sum is the trapezium rule. Where what passes rises from nothing and falls to nothing its
     error is less than any power of the interval, which may be a tenth of the time of passing.
     """
-    total, last, interval = None, None, 0.0
+    times: list[float] = []
+    total: Array | float = 0.0
     for frame in frames:
-        if last is None:
-            total = frame.R / 2
-        else:
-            interval = frame.t - last
-            total += frame.R
-        last = frame.t
-    if total is None or interval == 0:
-        raise ValueError("frames: must be at least two")
-    return np.asarray(total * interval)
+        total = total + (frame.R if times else frame.R / 2)
+        times.append(frame.t)
+    intervals = np.diff(times)
+    if intervals.size == 0 or np.ptp(intervals) > 1e-9 * intervals[0]:
+        raise ValueError("frames: must be at least two, at equal intervals")
+    return np.asarray(total * intervals[0])
 
 
 def opening_angle(

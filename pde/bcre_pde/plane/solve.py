@@ -122,8 +122,8 @@ def _solution(
     (rows, columns) = cells
     return Solution(
         problem=problem,
-        x=(np.arange(rows) + 0.5) * (problem.length / rows),
-        y=(np.arange(columns) + 0.5) * (problem.width / columns),
+        x=np.asarray(np.arange(rows) + 0.5) * (problem.length / rows),
+        y=np.asarray(np.arange(columns) + 0.5) * (problem.width / columns),
         t=np.array([frame.t for frame in frames]),
         h=np.array([frame.h for frame in frames]),
         R=np.array([frame.R for frame in frames]),

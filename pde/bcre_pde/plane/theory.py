@@ -34,14 +34,15 @@ def opening_angle(material: Material, S: float) -> float:
     where R grows at every fixed place (Bouchaud and Cates 1998).
     """
     m = material
-    if not S > m.Sc:
+    excess = S - m.Sc
+    if not excess > 0:
         raise ValueError(f"S = {S!r}: an avalanche needs a slope above Sc = {m.Sc!r}")
-    Sd = second_critical_slope(m.v, m.D_x, m.gamma, m.Sc)
-    if S >= Sd:
+    short = second_critical_slope(m.v, m.D_x, m.gamma, m.Sc) - S
+    if short <= 0:
         return 90.0
     if m.D_x == 0:
-        return math.degrees(math.atan(2 * math.sqrt(m.D_y * m.gamma * (S - m.Sc)) / m.v))
-    return math.degrees(math.atan(math.sqrt(m.D_y / m.D_x * (S - m.Sc) / (Sd - S))))
+        return math.degrees(math.atan(2 * math.sqrt(m.D_y * m.gamma * excess) / m.v))
+    return math.degrees(math.atan(math.sqrt(m.D_y / m.D_x * excess / short)))
 
 
 def frozen_slope_release(
