@@ -6,7 +6,7 @@ import logging
 import math
 import sys
 from functools import partial
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from pde import FieldCollection
@@ -17,10 +17,9 @@ from bcre_pde.bounded import BoundedRungeKutta, layer_scale
 from bcre_pde.explicit import FEHLBERG
 from bcre_pde.failure import SolveError, failed
 from bcre_pde.marched import Marched
+from bcre_pde.problem import Method
 
-Method = Literal["runge-kutta", "RK45", "DOP853", "LSODA", "BDF"]
-
-# Its warnings on the time that trackers take would stand between a user and an error message.
+# Its warnings on the time that trackers take would hide an error message.
 logging.getLogger("pde").setLevel(logging.ERROR)
 
 
@@ -76,9 +75,9 @@ def advance(
 
 
 def _bounded_step(equation: Marched, largest_R: float, span: tuple[float, float]) -> float:
-    """The longest stable step; refused where the evaluations that are left cannot suffice."""
+    """The longest stable step; refused where the evaluations left cannot suffice."""
     bound = equation.largest_explicit_step(largest_R)
-    needed = FEHLBERG.b.size * (span[1] - span[0]) / bound
+    needed = FEHLBERG.weights.size * (span[1] - span[0]) / bound
     if needed > equation.most_evaluations - equation.evaluations:
         raise SolveError(
             f"runge-kutta: steps of at most {bound:.3g}, the stable step with R up to "
@@ -94,7 +93,7 @@ def _thickest(equation: Marched, state: FieldCollection) -> int | tuple[int, ...
 
 
 def _silenced() -> dict[str, Any]:
-    """NumPy's answers to overflow and the like, with no warning: what is not finite is found out.
+    """NumPy's settings for overflow and the like, without warnings: the end is checked instead.
 
     Where the caller asked for an error, it stays one.
     """

@@ -17,18 +17,18 @@ Array = NDArray[np.float64]
 
 
 def layer_scale(R: Array) -> float:
-    """Largest |R|, or 1 where there is no layer at all: what errors in it are measured by."""
+    """Largest |R|, or 1 where there is no layer at all: what errors are relative to."""
     return float(np.abs(R).max()) or 1.0
 
 
 class BoundedRungeKutta(RungeKuttaSolver):  # type: ignore[misc]
-    """py-pde's adaptive Runge-Kutta-Fehlberg solver with the four things that this equation needs.
+    """py-pde's adaptive Runge-Kutta-Fehlberg solver with four changes.
 
-    Its error is relative to the largest rolling layer of the moment, which may grow from 1e-150;
-    its step never passes ``dt_max``: without that it would grow fourfold wherever nothing
-    happens, until rounding errors have been amplified to the size of the tolerance; it gives
-    up below ``dt_min``, since py-pde's 1e-10 would be a long step where times are short; and its
-    stages are those of :class:`bcre_pde.explicit.Step`, the same numbers in less time.
+    * Its error is relative to the largest rolling layer of the moment, which may grow from 1e-150.
+    * Its step never exceeds ``dt_max``. Otherwise the step would grow fourfold wherever nothing
+      happens, until rounding errors have been amplified to the size of the tolerance.
+    * It gives up below ``dt_min``: py-pde's 1e-10 would be a long step where times are short.
+    * Its stages are those of :class:`bcre_pde.explicit.Step`: the same numbers in less time.
     """
 
     name = "bounded runge-kutta"
@@ -40,12 +40,11 @@ class BoundedRungeKutta(RungeKuttaSolver):  # type: ignore[misc]
 
     def _make_single_step_error_estimate(self, state: FieldCollection) -> Callable[..., Any]:
         step = Step(self.pde, FEHLBERG)
-        start, new, error, nothing = (np.zeros(state.data.shape) for _ in range(4))
+        new, error, nothing = (np.zeros_like(state.data) for _ in range(3))
         add = self.pde.weighted_sum
 
         def relative_single_step(data: Array, t: float, dt: float) -> tuple[Array, float]:
-            np.copyto(start, data)  # py-pde's data lie between ghost cells, with gaps
-            step(start, t, dt, new)
+            step(data, t, dt, new)
             add(nothing, step.increments, FEHLBERG_ERROR, FEHLBERG_ERROR.size, 1.0, error)
             return new, float(np.abs(error, out=error).max()) / layer_scale(new[1])
 

@@ -1,6 +1,6 @@
 r"""Explicit Runge-Kutta methods by their coefficients, and their stages without allocation.
 
-    k_i = dt f(y + sum_j a_ij k_j)        y(t + dt) = y + sum_i b_i k_i
+    k_i = dt f(t + c_i dt, y + sum_j a_ij k_j)        y(t + dt) = y + sum_i b_i k_i
 
 Every sum runs from its first term to its last, as in the formulae of py-pde, so that the compiled
 ones of :mod:`bcre_pde.sums` give the same numbers to the bit.
@@ -8,24 +8,24 @@ ones of :mod:`bcre_pde.sums` give the same numbers to the bit.
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple, get_args
+from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bcre_pde.marched import Marched
-from bcre_pde.sums import weighted_sum as weighted_sum  # re-exported
+if TYPE_CHECKING:
+    from bcre_pde.marched import Marched
 
 Array = NDArray[np.float64]
 ExplicitMethod = Literal["runge-kutta", "RK45", "DOP853"]
 
 
 class Tableau(NamedTuple):
-    """a (s, s), strictly lower; b (s,) of the solution that is kept; times c (s,) of the stages."""
+    """a_ij (s, s), strictly lower; b_i (s,), of the solution that is kept; c_i (s,)."""
 
-    a: Array
-    b: Array
-    c: Array
+    increments: Array
+    weights: Array
+    nodes: Array
 
 
 FEHLBERG = Tableau(
@@ -64,14 +64,14 @@ def tableau(method: ExplicitMethod) -> Tableau:
 
     solver = getattr(integrate, method)
     stages = solver.n_stages
-    a = np.zeros((stages, stages))
+    increments = np.zeros((stages, stages))
     known = solver.A[:stages, :stages]
-    a[:, : known.shape[1]] = known
-    return Tableau(a, np.asarray(solver.B), np.asarray(solver.C[:stages]))
+    increments[:, : known.shape[1]] = known
+    return Tableau(increments, np.asarray(solver.B), np.asarray(solver.C[:stages]))
 
 
 class Step:
-    """One step of fixed length, in memory that is taken once.
+    """One step of fixed length, in memory that is allocated once.
 
     Parameters
     ----------
@@ -84,14 +84,13 @@ class Step:
         self._equation = equation
         self._method = method
         self._stage = np.zeros(shape)
-        self.increments = np.zeros((method.b.size, *shape))
+        self.increments = np.zeros((method.weights.size, *shape))
 
     def __call__(self, layers: Array, t: float, dt: float, new: Array) -> None:
         """Write y(t + dt) into ``new``; ``layers`` and ``new`` have shape (3, ...)."""
-        a, b, c = self._method
+        increments, weights, nodes = self._method
         add = self._equation.weighted_sum
-        k = self.increments
-        for i in range(b.size):
-            add(layers, k, a[i], i, dt, self._stage)
-            self._equation.write_rate(self._stage, k[i], t + c[i] * dt)
-        add(layers, k, b, b.size, dt, new)
+        for i in range(weights.size):
+            add(layers, self.increments, increments[i], i, dt, self._stage)
+            self._equation.write_rate(self._stage, self.increments[i], t + nodes[i] * dt)
+        add(layers, self.increments, weights, weights.size, dt, new)

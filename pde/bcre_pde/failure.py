@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
-from bcre_pde.marched import Marched
+if TYPE_CHECKING:
+    from bcre_pde.marched import Marched
 
 Array = NDArray[np.float64]
 
@@ -13,8 +16,8 @@ Array = NDArray[np.float64]
 class SolveError(RuntimeError):
     """A solver that gave up.
 
-    ``time`` is when it stood there and ``cell`` the number of the cell concerned, counted from 0 at
-    the top (two numbers on a plane); None where the failure has none.
+    ``time`` is when it gave up and ``cell`` the number of the cell concerned, counted from 0 at the
+    top (two numbers on a plane); None where the failure has none.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""What every equation here is to its solvers: counted, bounded, and able to say where it fails."""
+"""What the solvers need of an equation: it is counted, bounded, and can name its cells."""
 
 from __future__ import annotations
 
@@ -15,15 +15,20 @@ Array = NDArray[np.float64]
 
 
 class Marched(PDEBase):  # type: ignore[misc]
-    """An equation for three fields: a surface, R and "ends", the account of what leaves.
+    """An equation for three fields: the surface u, the rolling layer R, and "ends".
+
+    The third field is an account of the ends of the domain. As part of the state it is integrated
+    by the same solver, so that mass is conserved to rounding.
 
     Parameters
     ----------
-    state: of its grid; gives shape and labels.
+    state: any state; gives the grid and the names of the fields.
     most_evaluations: how often the right-hand side may be evaluated.
     """
 
     explicit_time_dependence = False
+    weighted_sum = staticmethod(sums.weighted_sum)
+    """How the stages of a Runge-Kutta step are summed."""
 
     def __init__(self, state: FieldCollection, most_evaluations: float = math.inf) -> None:
         super().__init__()
@@ -32,15 +37,12 @@ class Marched(PDEBase):  # type: ignore[misc]
         self.last_time = 0.0
         self._layers = np.zeros(state.data.shape)
         self.last_layers = self._layers
-        self._rate = state.copy()
-        self._rate.data[...] = 0.0
+        self._rates = state.copy()
+        self._rates.data[...] = 0.0
 
     @abstractmethod
     def rate(self, layers: Array, out: Array) -> None:
-        """Write the time derivative of the fields, shape (3, ...), into ``out``.
-
-        What it leaves as it is must be zero from the start, and is: entries of the third field.
-        """
+        """Write the time derivative of the fields, shape (3, ...), into ``out``."""
 
     @abstractmethod
     def largest_explicit_step(self, largest_R: float) -> float:
@@ -51,17 +53,15 @@ class Marched(PDEBase):  # type: ignore[misc]
         """Where a cell lies, in words; ``cell`` is its number in memory."""
 
     def cell(self, cell: int) -> int | tuple[int, ...]:
-        """What that cell is called."""
+        """What a user calls that cell."""
         return cell
-
-    weighted_sum = staticmethod(sums.weighted_sum)
-    """How the stages of a Runge-Kutta step are summed."""
 
     def evolution_rate(self, state: FieldCollection, t: float = 0) -> FieldCollection:
         """The right-hand side, in one field that every call overwrites (py-pde copies it)."""
-        np.copyto(self._layers, state.data)  # SciPy's memory may not last until a failure is told
-        self.write_rate(self._layers, self._rate.data, t)
-        return self._rate
+        # A copy: SciPy may reuse its memory before a failure is reported.
+        np.copyto(self._layers, state.data)
+        self.write_rate(self._layers, self._rates.data, t)
+        return self._rates
 
     def write_rate(self, layers: Array, out: Array, t: float = 0) -> None:
         """:meth:`rate`, counted.
@@ -69,7 +69,7 @@ class Marched(PDEBase):  # type: ignore[misc]
         Raises
         ------
         RuntimeError
-            where it has been asked for more often than ``most_evaluations``.
+            at the first call after ``most_evaluations``.
         """
         self.evaluations += 1
         self.last_time = t

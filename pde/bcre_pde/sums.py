@@ -1,4 +1,4 @@
-"""The sums of Runge-Kutta stages, without allocation."""
+"""The weighted sums of a Runge-Kutta step, without allocation."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ import numba
 
 @numba.njit(cache=True, error_model="numpy")
 def weighted_sum(start, terms, weights, count, dt, out):  # type: ignore[no-untyped-def]
-    """out = start + sum of the first ``count`` weights times terms, but for weights of zero.
+    """out = start + the first ``count`` weights times terms; weights of zero are skipped.
 
-    The last of the terms arrives as a rate and is multiplied by ``dt``, in place, first.
+    The last of these terms arrives as a rate, and is first multiplied by ``dt`` in place.
     """
     rows, cells = out.shape
     for row in range(rows):
@@ -18,8 +18,8 @@ def weighted_sum(start, terms, weights, count, dt, out):  # type: ignore[no-unty
                 terms[count - 1, row, i] *= dt
         for i in range(cells):
             out[row, i] = start[row, i]
-        for k in range(count):
-            weight = weights[k]
+        for term in range(count):
+            weight = weights[term]
             if weight != 0.0:
                 for i in range(cells):
-                    out[row, i] += weight * terms[k, row, i]
+                    out[row, i] += weight * terms[term, row, i]
