@@ -6,14 +6,12 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pde import FieldCollection
 from pde.solvers import RungeKuttaSolver
 
 from bcre_pde.explicit import FEHLBERG, FEHLBERG_ERROR, Step
 from bcre_pde.marched import Marched
-
-Array = NDArray[np.float64]
+from bcre_pde.problem import Array
 
 
 def layer_scale(R: Array) -> float:

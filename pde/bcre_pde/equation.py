@@ -16,18 +16,16 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bcre_pde import theory
 from bcre_pde.line import fluxes
 from bcre_pde.line.marched import MarchedOnLine
 from bcre_pde.material import Material
+from bcre_pde.problem import Array
 from bcre_pde.stencils import GHOSTS
 
 if TYPE_CHECKING:
     from pde import CartesianGrid
-
-Array = NDArray[np.float64]
 
 
 class BCRE(MarchedOnLine):

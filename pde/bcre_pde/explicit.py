@@ -11,12 +11,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
 
 import numpy as np
-from numpy.typing import NDArray
+
+from bcre_pde.problem import Array
 
 if TYPE_CHECKING:
     from bcre_pde.marched import Marched
 
-Array = NDArray[np.float64]
 ExplicitMethod = Literal["runge-kutta", "RK45", "DOP853"]
 
 

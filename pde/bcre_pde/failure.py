@@ -5,12 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+
+from bcre_pde.problem import Array
 
 if TYPE_CHECKING:
     from bcre_pde.marched import Marched
-
-Array = NDArray[np.float64]
 
 
 class SolveError(RuntimeError):

@@ -9,13 +9,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bcre_pde.explicit import ExplicitMethod, tableau
 from bcre_pde.material import Material
-from bcre_pde.problem import SMALLEST_GRID, Ends
-
-Array = NDArray[np.float64]
+from bcre_pde.problem import SMALLEST_GRID, Array, Ends
 
 
 def take_fixed_steps(

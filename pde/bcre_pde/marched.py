@@ -6,12 +6,10 @@ import math
 from abc import abstractmethod
 
 import numpy as np
-from numpy.typing import NDArray
 from pde import FieldCollection, PDEBase
 
 from bcre_pde import sums
-
-Array = NDArray[np.float64]
+from bcre_pde.problem import Array
 
 
 class Marched(PDEBase):  # type: ignore[misc]

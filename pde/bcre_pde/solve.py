@@ -9,16 +9,14 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
-from bcre_pde.problem import SMALLEST_GRID, Method, Problem, Solution
+from bcre_pde.problem import SMALLEST_GRID, Array, Method, Problem, Solution
 
 if TYPE_CHECKING:
     from pde import CartesianGrid, FieldCollection
 
     from bcre_pde.line.marched import MarchedOnLine
 
-Array = NDArray[np.float64]
 
 TOLERANCE = 1e-6
 """Default local error per step, relative to the largest rolling layer."""

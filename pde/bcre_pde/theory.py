@@ -18,8 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from bcre_pde.explicit import ExplicitMethod, tableau
 from bcre_pde.material import Material
-
-Array = NDArray[np.float64]
+from bcre_pde.problem import Array
 
 
 def second_critical_slope(v: float, D: float, gamma: float, Sc: float) -> float:

@@ -6,13 +6,10 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pde import CartesianGrid, FieldCollection, ScalarField
 
 from bcre_pde.marched import Marched
-from bcre_pde.problem import SMALLEST_GRID, Ends
-
-Array = NDArray[np.float64]
+from bcre_pde.problem import SMALLEST_GRID, Array, Ends
 
 
 class MarchedOnLine(Marched):
