@@ -12,7 +12,7 @@ from __future__ import annotations
 import numba
 
 from bcre_pde.exchange import exchanging
-from bcre_pde.fluxes import GHOSTS
+from bcre_pde.stencils import GHOSTS
 
 _compiled = numba.njit(error_model="numpy")
 

@@ -3,8 +3,8 @@ r"""Along the flow: the line's right-hand side for all columns of a row at once.
     F = v R - D_x R_x        E = -X(R) (gamma u_x + kappa_x u_xx)
 
 Values on the faces, the exchange law and what happens at open ends are those of
-:mod:`bcre_pde.fluxes`, in the same order of operations. Rows wrap; where the ends are open, those
-whose stencils would are left to :func:`rates_at_open_ends`.
+:mod:`bcre_pde.line.fluxes`, in the same order of operations. Rows wrap; where the ends are open,
+those whose stencils would are left to :func:`rates_at_open_ends`.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from __future__ import annotations
 import numba
 import numpy as np
 
-from bcre_pde import fluxes as line
+from bcre_pde import stencils
 from bcre_pde.exchange import exchange, exchanging
+from bcre_pde.stencils import face_value
 
 _compiled = numba.njit(error_model="numpy")
-_face_value = line._face_value
 
 
 @_compiled
@@ -27,7 +27,7 @@ def faces(u, R, f, K, flux, face):  # type: ignore[no-untyped-def]
     u1, u2, u3 = u[f - 2], u[f - 1], u[f % n]
     u4, u5 = u[(f + 1) % n], u[(f + 2) % n]
     for j in range(face.size):
-        face[j] = _face_value(u5[j], u4[j], u3[j], u2[j], u1[j])
+        face[j] = face_value(u5[j], u4[j], u3[j], u2[j], u1[j])
 
 
 @_compiled
@@ -37,7 +37,7 @@ def _rolling_fluxes(R, f, v, D, dx, flux):  # type: ignore[no-untyped-def]
     R0, R1, R2, R3 = R[f - 3], R[f - 2], R[f - 1], R[f % n]
     R4, R5 = R[(f + 1) % n], R[(f + 2) % n]
     for j in range(flux.size):
-        carried = _face_value(R0[j], R1[j], R2[j], R3[j], R4[j])
+        carried = face_value(R0[j], R1[j], R2[j], R3[j], R4[j])
         difference = 245 * (R3[j] - R2[j]) - 25 * (R4[j] - R1[j]) + 2 * (R5[j] - R0[j])
         flux[j] = v * carried - spread * difference
 
@@ -99,8 +99,8 @@ def rates_at_open_ends(layers, K, rates):  # type: ignore[no-untyped-def]
     for j in range(columns):
         u, R, foot = layers[0, :, j], layers[1, :, j], layers[2, 0, j]
         flux[3], flux[n - 3] = inner[0, j], inner[1, j]
-        line._rolling_flux_at_open_ends(R, flux, K.v, K.D_x, K.dx, n)
-        line._change_at_open_ends(
+        stencils.rolling_flux_at_open_ends(R, flux, K.v, K.D_x, K.dx, n)
+        stencils.change_at_open_ends(
             u, R, flux, rates[:, :, j], K.gamma, K.kappa_x, K.dx, n, foot, K.saturation
         )
         rates[2, 0, j] = _rise_of_foot(u, R, foot, K.kappa_x, K.saturation, K.dx, n)
@@ -111,4 +111,4 @@ def rates_at_open_ends(layers, K, rates):  # type: ignore[no-untyped-def]
 def _rise_of_foot(u, R, foot, kappa, saturation, dx, n):  # type: ignore[no-untyped-def]
     if kappa is None:
         return 0.0
-    return kappa * exchanging(R[n - 1], saturation) * line._curvature_on_foot(u, foot, dx, n)
+    return kappa * exchanging(R[n - 1], saturation) * stencils.curvature_on_foot(u, foot, dx, n)

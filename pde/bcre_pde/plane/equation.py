@@ -11,15 +11,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 from pde import CartesianGrid, FieldCollection, ScalarField
 
 from bcre_pde.exchange import exchanging
 from bcre_pde.marched import Marched
 from bcre_pde.plane import fluxes, sums
 from bcre_pde.plane.material import Material
-
-Array = NDArray[np.float64]
+from bcre_pde.plane.problem import check_cells
+from bcre_pde.problem import Array
 
 
 class BCRE(Marched):
@@ -66,6 +65,13 @@ class BCRE(Marched):
             joined_ends=bool(grid.periodic[0]),
             joined_sides=bool(grid.periodic[1]),
         )
+
+    @staticmethod
+    def grid(
+        length: float, width: float, cells: tuple[int, int], joined: tuple[bool, bool]
+    ) -> CartesianGrid:
+        """The plane; ``joined``: whether its ends and its sides are periodic."""
+        return CartesianGrid([[0.0, length], [0.0, width]], cells, periodic=list(joined))
 
     @staticmethod
     def state(grid: CartesianGrid, u: Array, R: Array, u_foot: Array) -> FieldCollection:
@@ -118,12 +124,3 @@ class BCRE(Marched):
         """Its x and y."""
         i, j = self.cell(cell)
         return f"x = {(i + 0.5) * self.dx:.6g}, y = {(j + 0.5) * self.dy:.6g}"
-
-
-def check_cells(cells: tuple[int, ...]) -> None:
-    """Refuse a grid that does not hold the stencils."""
-    if len(cells) != 2:
-        raise ValueError(f"cells = {cells!r}: must be two numbers, along and across")
-    least = (fluxes.SMALLEST_ALONG, fluxes.SMALLEST_ACROSS)
-    if any(n < smallest for n, smallest in zip(cells, least, strict=True)):
-        raise ValueError(f"cells = {cells!r}: must be at least {least}, along and across")

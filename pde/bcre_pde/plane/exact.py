@@ -14,15 +14,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bcre_pde import exact as line
 from bcre_pde.plane import theory
 from bcre_pde.plane.material import Material
 from bcre_pde.plane.problem import Problem, Sides
-from bcre_pde.solve import Ends
-
-Array = NDArray[np.float64]
+from bcre_pde.problem import Array, Ends
 
 
 @dataclass(frozen=True)

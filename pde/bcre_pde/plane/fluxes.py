@@ -5,8 +5,8 @@ With u = h + Sc x, x downhill and y across,
     u_t = -E        R_t = -(v R - D_x R_x)_x + (D_y R_y)_y + E
     E = -X(R) (gamma u_x + kappa_x u_xx + kappa_y u_yy)
 
-Nothing is carried across. So every column is the line of :mod:`bcre_pde.fluxes`, monotone and of
-fifth order (:mod:`~bcre_pde.plane.along`), plus what its neighbours exchange with it
+Nothing is carried across. So every column is the line of :mod:`bcre_pde.line.fluxes`, monotone
+and of fifth order (:mod:`~bcre_pde.plane.along`), plus what its neighbours exchange with it
 (:mod:`~bcre_pde.plane.across`), which is exactly nothing where a scene does not depend on y.
 
 Arrays are (rows, columns) = (cells along x, cells across y): compiled loops run along a row,
@@ -15,18 +15,14 @@ through neighbours in memory. Threads take blocks of rows; the numbers are the s
 
 from __future__ import annotations
 
-import hashlib
-from pathlib import Path
 from typing import NamedTuple
 
 import numba
 import numpy as np
 
-from bcre_pde.fluxes import GHOSTS, SMALLEST_GRID
+from bcre_pde.kept import SOURCES
 from bcre_pde.plane import across, along
-
-SMALLEST_ALONG = SMALLEST_GRID
-SMALLEST_ACROSS = GHOSTS
+from bcre_pde.stencils import GHOSTS
 
 _compiled = numba.njit(error_model="numpy")
 
@@ -84,8 +80,7 @@ def _open_ends(layers, rates, K):  # type: ignore[no-untyped-def]
 def entries(sources: str):  # type: ignore[no-untyped-def]
     """The compiled right-hand sides, on one thread and on several.
 
-    As :func:`bcre_pde.fluxes.entry` says, ``sources`` keeps machine code on disk from outliving
-    the files that it was compiled from.
+    ``sources`` is part of the key of their machine code on disk: see :mod:`bcre_pde.kept`.
     """
 
     @numba.njit(cache=True, error_model="numpy")
@@ -116,11 +111,4 @@ def entries(sources: str):  # type: ignore[no-untyped-def]
     return rate, rate_on_threads
 
 
-def _digest() -> str:
-    digest = hashlib.sha256()
-    for path in sorted(Path(__file__).parents[1].rglob("*.py")):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()
-
-
-rate, rate_on_threads = entries(_digest())
+rate, rate_on_threads = entries(SOURCES)

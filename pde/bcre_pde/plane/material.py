@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from bcre_pde.equation import Material as Line
+from bcre_pde.material import Material as Line
 
 
 @dataclass(frozen=True)

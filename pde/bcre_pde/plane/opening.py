@@ -17,13 +17,11 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 from scipy.optimize import brentq
 
 from bcre_pde.plane.problem import Frame
-
-Array = NDArray[np.float64]
+from bcre_pde.problem import Array
 
 
 class OpeningAngle(NamedTuple):

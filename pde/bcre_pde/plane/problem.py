@@ -1,4 +1,4 @@
-"""Initial value problems on a plane, and the record of their solutions."""
+"""What is solved on a plane, and what a solution holds; needs neither py-pde nor compiled code."""
 
 from __future__ import annotations
 
@@ -8,13 +8,14 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bcre_pde.plane.material import Material
-from bcre_pde.solve import Ends
+from bcre_pde.problem import SMALLEST_GRID, Array, Ends
 
-Array = NDArray[np.float64]
 Sides = Literal["periodic", "closed"]
+
+SMALLEST_ALONG, SMALLEST_ACROSS = SMALLEST_GRID, 3
+"""Fewer cells do not hold the stencils."""
 
 
 @dataclass(frozen=True)
@@ -104,3 +105,12 @@ class Solution:
         cell = self.dx * self.dy
         frames = zip(self.h, self.R, strict=True)
         return np.array([cell * (math.fsum(h.flat) + math.fsum(R.flat)) for h, R in frames])
+
+
+def check_cells(cells: tuple[int, ...]) -> None:
+    """Refuse a grid that does not hold the stencils."""
+    if len(cells) != 2:
+        raise ValueError(f"cells = {cells!r}: must be two numbers, along and across")
+    least = (SMALLEST_ALONG, SMALLEST_ACROSS)
+    if any(n < smallest for n, smallest in zip(cells, least, strict=True)):
+        raise ValueError(f"cells = {cells!r}: must be at least {least}, along and across")

@@ -5,14 +5,18 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from pde import CartesianGrid, FieldCollection
 
-from bcre_pde.advance import advance
-from bcre_pde.plane.equation import BCRE, check_cells
-from bcre_pde.plane.problem import Array, Frame, Problem, Solution
+from bcre_pde.plane.problem import Frame, Problem, Solution, check_cells
+from bcre_pde.problem import Array
 from bcre_pde.solve import MOST_EVALUATIONS, TOLERANCE, ascending
+
+if TYPE_CHECKING:
+    from pde import CartesianGrid, FieldCollection
+
+    from bcre_pde.plane.equation import BCRE
 
 
 @dataclass
@@ -37,7 +41,7 @@ def march(
     Parameters
     ----------
     problem: what to solve.
-    times: when to give the layers; 0 gives the start.
+    times: when to give the layers; 0 gives the start. py-pde is imported at the first call.
     cells: Nx >= 8 along and Ny >= 3 across.
     tolerance: local error per step of py-pde's adaptive Runge-Kutta-Fehlberg solver, kept below the
         stable step; relative to the largest rolling layer.
@@ -53,13 +57,12 @@ def march(
     if not 0 < tolerance < 1:
         raise ValueError(f"tolerance = {tolerance!r}: must lie between 0 and 1")
     check_cells(cells)
-    grid = CartesianGrid(
-        [[0.0, problem.length], [0.0, problem.width]],
-        cells,
-        periodic=[problem.ends == "periodic", problem.sides == "periodic"],
-    )
+    from bcre_pde.plane.equation import BCRE
+
+    joined = problem.ends == "periodic", problem.sides == "periodic"
+    grid = BCRE.grid(problem.length, problem.width, cells, joined)
     equation = BCRE(problem.material, grid, MOST_EVALUATIONS, threads)
-    state = _initial_state(problem, grid)
+    state = _initial_state(problem, equation, grid)
     return _frames(problem, ordered, equation, state, tolerance, account or Account())
 
 
@@ -71,6 +74,8 @@ def _frames(
     tolerance: float,
     account: Account,
 ) -> Iterator[Frame]:
+    from bcre_pde.advance import advance
+
     equation.compile(state)  # so that the clock sees the march alone
     repose = problem.material.Sc * state.grid.cell_coords[..., 0]
     now = 0.0
@@ -134,13 +139,13 @@ def _solution(
     )
 
 
-def _initial_state(problem: Problem, grid: CartesianGrid) -> FieldCollection:
+def _initial_state(problem: Problem, equation: BCRE, grid: CartesianGrid) -> FieldCollection:
     x, y = grid.cell_coords[..., 0], grid.cell_coords[..., 1]
     h, R = _layers(problem, x, y)
     foot = np.full((1, y.shape[1]), problem.length)
     h_foot, _ = _layers(problem, foot, y[:1])
     Sc = problem.material.Sc
-    return BCRE.state(grid, h + Sc * x, R, h_foot[0] + Sc * problem.length)
+    return equation.state(grid, h + Sc * x, R, h_foot[0] + Sc * problem.length)
 
 
 def _layers(problem: Problem, x: Array, y: Array) -> tuple[Array, Array]:

@@ -19,12 +19,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bcre_pde.plane.material import Material
+from bcre_pde.problem import Array
 from bcre_pde.theory import second_critical_slope
-
-Array = NDArray[np.float64]
 
 
 def opening_angle(material: Material, S: float) -> float:

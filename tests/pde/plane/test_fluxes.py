@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bcre_pde import fluxes as line
+from bcre_pde.line import fluxes as line
 from bcre_pde.plane import fluxes
 
 TERMS = ("v", "D_x", "D_y", "gamma", "kappa_x", "kappa_y")

@@ -2,6 +2,8 @@
 
 import importlib
 import math
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -240,3 +242,15 @@ def test_isotropic_material_is_that_of_the_line_both_ways():
 def test_start_that_is_not_finite_or_has_another_shape_is_refused(start, message):
     with pytest.raises(ValueError, match=message):
         solve(problem(start), [1.0], CELLS)
+
+
+LIGHT = """
+import sys
+import bcre_pde.plane, bcre_pde.plane.exact, bcre_pde.plane.opening, bcre_pde.plane.theory
+print(*{"pde", "numba", "pandas", "matplotlib"} & set(sys.modules))
+"""
+
+
+def test_what_needs_no_solver_imports_neither_py_pde_nor_numba():
+    told = subprocess.run([sys.executable, "-c", LIGHT], capture_output=True, check=True, text=True)
+    assert told.stdout.strip() == ""
