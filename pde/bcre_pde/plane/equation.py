@@ -33,6 +33,8 @@ class BCRE(Marched):
     grid: at least 8 cells along x and 3 across y, from x = y = 0, each periodic or not.
     most_evaluations: how often the right-hand side may be evaluated.
     threads: on how many it is evaluated, >= 1; the numbers are the same on any.
+    bed: u of a rigid base, (Nx, Ny), and the grain of the layer on it: see
+        :mod:`bcre_pde.plane.bed`.
     """
 
     def __init__(
@@ -41,6 +43,7 @@ class BCRE(Marched):
         grid: CartesianGrid,
         most_evaluations: float = math.inf,
         threads: int = 1,
+        bed: tuple[Array, float] | None = None,
     ) -> None:
         check_cells(grid.shape)
         if threads < 1:
@@ -52,6 +55,7 @@ class BCRE(Marched):
         self.columns = int(grid.shape[1])
         self.threads = threads
         bends = material.kappa_x > 0 or material.kappa_y > 0
+        self._base = None if bed is None else bed[0]
         self._coefficients = fluxes.Coefficients(
             v=material.v,
             D_x=material.D_x,
@@ -64,6 +68,7 @@ class BCRE(Marched):
             dy=self.dy,
             joined_ends=bool(grid.periodic[0]),
             joined_sides=bool(grid.periodic[1]),
+            grain=math.inf if bed is None else bed[1],
         )
 
     @staticmethod
@@ -84,9 +89,9 @@ class BCRE(Marched):
     def rate(self, layers: Array, out: Array) -> None:
         """Write the time derivative of u, R and ends, shape (3, Nx, Ny), into ``out``."""
         if self.threads == 1:
-            fluxes.rate(layers, out, self._coefficients)
+            fluxes.rate(layers, out, self._base, self._coefficients)
         else:
-            fluxes.rate_on_threads(layers, out, self._coefficients, self.threads)
+            fluxes.rate_on_threads(layers, out, self._base, self._coefficients, self.threads)
 
     def weighted_sum(
         self, start: Array, terms: Array, weights: Array, count: int, dt: float, out: Array

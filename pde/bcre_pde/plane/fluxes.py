@@ -21,7 +21,7 @@ import numba
 import numpy as np
 
 from bcre_pde.kept import SOURCES
-from bcre_pde.plane import across, along
+from bcre_pde.plane import across, along, bed
 from bcre_pde.stencils import GHOSTS
 
 _compiled = numba.njit(error_model="numpy")
@@ -44,10 +44,11 @@ class Coefficients(NamedTuple):
     dy: float
     joined_ends: bool
     joined_sides: bool
+    grain: float
 
 
 @_compiled
-def _inner(layers, rates, K, block, blocks):  # type: ignore[no-untyped-def]
+def _inner(layers, rates, base, K, block, blocks):  # type: ignore[no-untyped-def]
     """Rates of a block of the rows whose stencils stay inside or wrap."""
     rows, columns = layers.shape[1:]
     top = 0 if K.joined_ends else GHOSTS
@@ -63,10 +64,17 @@ def _inner(layers, rates, K, block, blocks):  # type: ignore[no-untyped-def]
         along.faces(u, R, i + 1, K, flux[(i + 1) % 2], face[(i + 1) % 2])
         along.change(layers, i, flux, face, K, bend, rates)
         across.add_rates(u[i], R[i], K, padded, scratch, rates[0, i], rates[1, i])
+        _limit(base, i, layers, rates, K)
 
 
 @_compiled
-def _open_ends(layers, rates, K):  # type: ignore[no-untyped-def]
+def _limit(base, i, layers, rates, K):  # type: ignore[no-untyped-def]
+    if base is not None:
+        bed.limit(layers[0, i], base[i], K.grain, rates[0, i], rates[1, i])
+
+
+@_compiled
+def _open_ends(layers, rates, base, K):  # type: ignore[no-untyped-def]
     rows, columns = layers.shape[1:]
     padded, scratch = np.empty(columns + 2 * GHOSTS), np.empty(columns + 1)
     u, R, foot = layers[0], layers[1], layers[2, 0]
@@ -74,6 +82,7 @@ def _open_ends(layers, rates, K):  # type: ignore[no-untyped-def]
     for end in range(GHOSTS):
         for i in (end, rows - 1 - end):
             across.add_rates(u[i], R[i], K, padded, scratch, rates[0, i], rates[1, i])
+            _limit(base, i, layers, rates, K)
     across.add_rise_of_foot(foot, R[rows - 1], K, padded, scratch, rates[2, 0])
 
 
@@ -84,7 +93,7 @@ def entries(sources: str):  # type: ignore[no-untyped-def]
     """
 
     @numba.njit(cache=True, error_model="numpy")
-    def rate(layers, rates, K):  # type: ignore[no-untyped-def]
+    def rate(layers, rates, base, K):  # type: ignore[no-untyped-def]
         """Write the time derivative of ``layers`` into ``rates``.
 
         Parameters
@@ -92,21 +101,22 @@ def entries(sources: str):  # type: ignore[no-untyped-def]
         layers, rates: shape (3, rows, columns): u; R; and of the third field, used for open ends
             only, the first row holds u on the foot and the last one the outflow so far divided by
             rows times dx. Its other rows are neither read nor written.
+        base: u of the rigid base, shape (rows, columns), or None without one.
         K: the coefficients.
         """
         sources  # noqa: B018
-        _inner(layers, rates, K, 0, 1)
+        _inner(layers, rates, base, K, 0, 1)
         if not K.joined_ends:
-            _open_ends(layers, rates, K)
+            _open_ends(layers, rates, base, K)
 
     @numba.njit(cache=True, error_model="numpy", parallel=True)
-    def rate_on_threads(layers, rates, K, threads):  # type: ignore[no-untyped-def]
+    def rate_on_threads(layers, rates, base, K, threads):  # type: ignore[no-untyped-def]
         """The same numbers on at most ``threads`` threads."""
         sources  # noqa: B018
         for block in numba.prange(threads):
-            _inner(layers, rates, K, block, threads)
+            _inner(layers, rates, base, K, block, threads)
         if not K.joined_ends:
-            _open_ends(layers, rates, K)
+            _open_ends(layers, rates, base, K)
 
     return rate, rate_on_threads
 

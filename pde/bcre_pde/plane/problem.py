@@ -30,6 +30,9 @@ class Problem:
         finite, > 0.
     ends: ``"open"`` (closed top, open foot) or ``"periodic"`` (in h + Sc x and R).
     sides: ``"periodic"`` or ``"closed"``: mirrors, through which nothing passes.
+    thickness: of the erodible layer on a rigid base, a length > 0; infinite without one.
+    grain: the last part of a finite layer, which is eroded the slower the less is left of it (see
+        :mod:`bcre_pde.plane.bed`); left out, a tenth of the thickness.
 
     Raises
     ------
@@ -43,12 +46,18 @@ class Problem:
     width: float
     ends: Ends = "open"
     sides: Sides = "periodic"
+    thickness: float = math.inf
+    grain: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("length", "width"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0):
                 raise ValueError(f"{name} = {value!r}: must be a finite number > 0")
+        if not self.thickness > 0:
+            raise ValueError(f"thickness = {self.thickness!r}: must be > 0")
+        if self.grain is not None and not 0 < self.grain <= self.thickness:
+            raise ValueError(f"grain = {self.grain!r}: must be > 0 and at most the thickness")
         for name, allowed in (("ends", get_args(Ends)), ("sides", get_args(Sides))):
             value = getattr(self, name)
             if value not in allowed:

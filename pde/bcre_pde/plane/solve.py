@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -61,8 +62,11 @@ def march(
 
     joined = problem.ends == "periodic", problem.sides == "periodic"
     grid = BCRE.grid(problem.length, problem.width, cells, joined)
-    equation = BCRE(problem.material, grid, MOST_EVALUATIONS, threads)
-    state = _initial_state(problem, equation, grid)
+    state = _initial_state(problem, grid)
+    bed = None
+    if math.isfinite(problem.thickness):
+        bed = state[0].data - problem.thickness, problem.grain or problem.thickness / 10
+    equation = BCRE(problem.material, grid, MOST_EVALUATIONS, threads, bed)
     return _frames(problem, ordered, equation, state, tolerance, account or Account())
 
 
@@ -139,13 +143,15 @@ def _solution(
     )
 
 
-def _initial_state(problem: Problem, equation: BCRE, grid: CartesianGrid) -> FieldCollection:
+def _initial_state(problem: Problem, grid: CartesianGrid) -> FieldCollection:
+    from bcre_pde.plane.equation import BCRE
+
     x, y = grid.cell_coords[..., 0], grid.cell_coords[..., 1]
     h, R = _layers(problem, x, y)
     foot = np.full((1, y.shape[1]), problem.length)
     h_foot, _ = _layers(problem, foot, y[:1])
     Sc = problem.material.Sc
-    return equation.state(grid, h + Sc * x, R, h_foot[0] + Sc * problem.length)
+    return BCRE.state(grid, h + Sc * x, R, h_foot[0] + Sc * problem.length)
 
 
 def _layers(problem: Problem, x: Array, y: Array) -> tuple[Array, Array]:
