@@ -13,19 +13,19 @@ ALL = {"v": 1.1, "D_x": 0.3, "D_y": 0.2, "gamma": 0.5, "kappa_x": 0.2, "kappa_y"
 
 
 def coefficients(ends=False, sides=True, dx=0.7, dy=0.4, **given):
-    terms = dict.fromkeys(TERMS, 0.0) | {"saturation": None} | given
+    terms = dict.fromkeys(TERMS, 0.0) | {"saturation": None, "grain": 0.5} | given
     return fluxes.Coefficients(**terms, dx=dx, dy=dy, joined_ends=ends, joined_sides=sides)
 
 
-def rate(u, R, K, foot=None, threads=None):
+def rate(u, R, K, foot=None, threads=None, base=None):
     """Rates of u, R and the ends."""
     layers, rates = np.zeros((3, *u.shape)), np.zeros((3, *u.shape))
     layers[0], layers[1] = u, R
     layers[2, 0] = 0.0 if foot is None else foot
     if threads is None:
-        fluxes.rate(layers, rates, K)
+        fluxes.rate(layers, rates, base, K)
     else:
-        fluxes.rate_on_threads(layers, rates, K, threads)
+        fluxes.rate_on_threads(layers, rates, base, K, threads)
     return rates
 
 

@@ -155,7 +155,7 @@ def test_stop_ends_the_solve_after_the_frame_that_satisfies_it():
 
 
 def test_failure_names_cell_place_and_time(monkeypatch):
-    def rate(layers, out, K):
+    def rate(layers, out, base, K):
         out[...] = 0.0
         out[1, 17, 4] = out[1, 30, 2] = math.nan
 
@@ -167,7 +167,7 @@ def test_failure_names_cell_place_and_time(monkeypatch):
 
 
 def test_foot_that_is_not_finite_is_of_the_last_cell_of_its_column(monkeypatch):
-    def rate(layers, out, K):
+    def rate(layers, out, base, K):
         out[...] = 0.0
         out[2, 0, 4] = math.nan
 
