@@ -30,13 +30,12 @@ from bcre_studies.comparison.compare import significant
 from bcre_studies.performance.record import contest
 from bcre_studies.performance.record.record import TARGETS, cheapest, read
 from bcre_studies.reporting import style
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-READS_RECORD = True
 PAPERS = "automaton, upwind"
 BETTER = ("automaton, calibrated", "automaton, limited")
 TRUTH_SHARE = 0.1

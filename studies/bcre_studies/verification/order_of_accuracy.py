@@ -32,7 +32,7 @@ from bcre_studies.comparison.claim import Claim, Verdict, worst
 from bcre_studies.comparison.compare import significant
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

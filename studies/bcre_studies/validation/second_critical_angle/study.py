@@ -37,7 +37,7 @@ from bcre_studies.comparison.compare import to_error
 from bcre_studies.comparison.measured import Measured, numbers, shown
 from bcre_studies.observables.outcome import Outcome
 from bcre_studies.reporting import style
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 from bcre_studies.validation.second_critical_angle.climb import (
     Bracket,
     climb,

@@ -18,7 +18,7 @@ from bcre_studies.comparison.compare import relative_difference, significant
 from bcre_studies.models.simulate import rule_of
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 SCENES: dict[str, dict[str, float]] = {
     "figure1": {},

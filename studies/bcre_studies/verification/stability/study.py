@@ -42,7 +42,7 @@ from bcre_pde.solve import Method
 from bcre_studies.comparison.claim import Claim, Verdict
 from bcre_studies.comparison.compare import significant
 from bcre_studies.reporting import style
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 from bcre_studies.verification.stability.amplification import Numbers, Variant, rule_with, stable
 from bcre_studies.verification.stability.growth import (
     PDE,
