@@ -14,7 +14,8 @@ import pandas as pd
 import pytest
 
 from bcre_studies import catalog, cli
-from bcre_studies.comparison.claim import Claim, Verdict
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.publishing import store, write
 from bcre_studies.reporting import style
 from bcre_studies.system import files
