@@ -8,7 +8,7 @@ import pytest
 import bcre_pde
 from bcre_studies.comparison import scaled
 from bcre_studies.comparison.claim import Verdict
-from bcre_studies.models.simulate import Run
+from bcre_studies.models.run import Run
 from bcre_studies.observables import fronts as observe
 from bcre_studies.scenes.scene import load
 

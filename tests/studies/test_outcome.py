@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from bcre_studies.models.simulate import Run
+from bcre_studies.models.run import Run
 from bcre_studies.observables.outcome import (
     Outcome,
     growth_rate,
