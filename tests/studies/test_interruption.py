@@ -230,9 +230,6 @@ def test_store_keeps_the_latest_states_of_a_study_and_forgets_the_others(tmp_pat
 
 SLEEPERS = """
 import os, sys, time
-from pathlib import Path
-from bcre_studies.sweeps import each as work
-from bcre_studies import cli
 
 def sleep(case):
     Path(f"started-{os.getpid()}").touch()

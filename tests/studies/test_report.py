@@ -18,7 +18,8 @@ import bcre_ca
 import bcre_pde
 import bcre_studies
 from bcre_studies import catalog, cli
-from bcre_studies.comparison.claim import Claim, Verdict
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON
 from bcre_studies.publishing import finding, store, write
 from bcre_studies.reporting import pages, style

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from bcre_studies.comparison.claim import Verdict
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON, BCRE
 from bcre_studies.observables import fronts as observe
 from bcre_studies.scenes.scene import load

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import pandas as pd
 
 from bcre_studies.catalog import STUDIES, study
-from bcre_studies.comparison.claim import Claim, Verdict
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.paper_claims import PAPER_CLAIMS, PaperClaim
 from bcre_studies.publishing.finding import Finding, find
 from bcre_studies.reporting import style

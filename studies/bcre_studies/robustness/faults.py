@@ -43,7 +43,6 @@ KILLS = 4
 # Root may write everywhere; another user may not. The libraries are loaded before.
 _WRITE = """
 import os, resource, signal, sys
-from pathlib import Path
 from bcre_studies.system.files import replace_bytes
 path, fault = Path(sys.argv[1]), sys.argv[2]
 if fault == "full":

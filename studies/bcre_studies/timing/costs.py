@@ -24,7 +24,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.rounding import significant
 from bcre_studies.models.registry import AUTOMATON, BCRE, CANDIDATES, SCHEMES
 from bcre_studies.models.run import frame_times
 from bcre_studies.scenes.domain import Array

@@ -13,8 +13,9 @@ import numpy as np
 import pandas as pd
 from scipy.stats import bootstrap
 
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED
 from bcre_studies.observables.fronts import roughness
 from bcre_studies.reporting import style

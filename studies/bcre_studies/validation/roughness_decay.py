@@ -26,9 +26,10 @@ import pandas as pd
 
 import bcre_ca.theory
 import bcre_pde.theory
-from bcre_studies.comparison.claim import Claim, Verdict, worst
-from bcre_studies.comparison.compare import significant
-from bcre_studies.comparison.scaled import compare_each
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.compare import compare_each
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict, worst
 from bcre_studies.models.automaton import rule_of
 from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED, EFFECTIVE, MODELS, Model
 from bcre_studies.models.run import Run
@@ -144,7 +145,7 @@ def _modes(case: tuple[str, float]) -> list[Row]:
     )
     # BCRE's decay rate may be zero, its phase speed may not.
     scales = [value for pair in zip(own[::2], nominal[1::2], strict=True) for value in pair]
-    results = compare_each(scene, [0.0, SPAN], measured, scales, TOLERANCE)
+    results = compare_each(scene, [0.0, SPAN], measured, scales, TOLERANCE, finest=800)
     rows = [
         {
             "quantity": names[index % 2],
@@ -171,7 +172,9 @@ def _rough_slope() -> tuple[list[Row], pd.DataFrame]:
     def measured(run: Run) -> list[float]:
         return [observe.roughness(u) for u in run.u[1:]]
 
-    results = compare_each(scene, [0.0, *SHOWN], measured, HEIGHT, TOLERANCE)
+    results = compare_each(
+        scene, [0.0, *SHOWN], measured, [HEIGHT] * len(SHOWN), TOLERANCE, finest=800
+    )
     table = [
         {
             "quantity": RMS,
