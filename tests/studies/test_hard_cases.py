@@ -121,7 +121,7 @@ def test_adapted_step_of_figure_2_gives_the_fixed_steps_R():
     assert row["lowered"] > 3
 
 
-def made_up(told="in cell 3, t = 4: dt = 1", smallest=0.0, mass=1e-13, faults="as expected"):
+def made_up(told="in cell 3, t = 4: dt = 1", smallest=0.0, mass=1e-13):
     rows = [
         {"scene": study.long_run().name, "verdict": SURVIVES, "told": "", "smallest_R": smallest},
         {"scene": "A", "verdict": FAILS, "told": told, "smallest_R": ""},
@@ -136,7 +136,6 @@ def made_up(told="in cell 3, t = 4: dt = 1", smallest=0.0, mass=1e-13, faults="a
         "comparison": pd.DataFrame(table),
         "scarp": scarp_grids.with_changes(scarp_rows(0.0)),
         "adaptive_step": pd.DataFrame([adaptive | {"fixed_steps": 2, "verdict": "agree"}]),
-        "faults": pd.DataFrame([{"fault": "disk full", "verdict": faults}]),
     }
 
 
@@ -149,5 +148,4 @@ def test_claims_fail_by_what_they_claim():
     assert failing(told="it broke at t = 4") == ["each failing model says where"]
     assert failing(smallest=-0.1) == ["R >= 0"]
     assert failing(mass=1e-11) == ["mass"]
-    assert failing(faults="not") == ["faults"]
     assert failing(smallest=float("nan")) == ["finite"]

@@ -37,13 +37,12 @@ from bcre_studies.performance.record.record import read
 from bcre_studies.reporting import style
 from bcre_studies.scenes.listing import built_in_names
 from bcre_studies.scenes.scene import Scene, load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 from bcre_studies.timing.costs import closures_of, recorded
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-READS_RECORD = True  # the costs
 SCENES = 60
 TOLERANCE = 0.05
 FRAMES = 3

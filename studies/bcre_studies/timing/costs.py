@@ -47,7 +47,8 @@ FRAMES = 40
 COURANT = 0.1
 """Of the measured runs: well below every bound."""
 
-RECORD = REPORTS / "speed" / "costs.csv"
+READS = "speed/costs.csv"
+RECORD = REPORTS / READS
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ from bcre_studies.models.run import Run
 from bcre_studies.observables.outcome import slope
 from bcre_studies.reporting import style
 from bcre_studies.scenes.scene import Scene, load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -20,7 +20,7 @@ from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED
 from bcre_studies.observables.fronts import roughness
 from bcre_studies.reporting import style
 from bcre_studies.scenes.scene import load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

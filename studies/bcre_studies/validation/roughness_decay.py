@@ -38,7 +38,7 @@ from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, load
 from bcre_studies.scenes.terms import NOISE_WAVES
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -43,7 +43,7 @@ from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Domain
 from bcre_studies.scenes.scene import Scene, Time, load
 from bcre_studies.scenes.terms import Incline, Sine, Uniform
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -34,7 +34,7 @@ from bcre_studies.comparison.verdict import Verdict, worst
 from bcre_studies.models.registry import AUTOMATON, BCRE, SCHEMES
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

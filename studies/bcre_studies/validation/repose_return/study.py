@@ -40,7 +40,7 @@ from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED, EFFECTIVE, M
 from bcre_studies.observables.outcome import slope, spent
 from bcre_studies.reporting import style
 from bcre_studies.scenes.scene import Scene, load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 from bcre_studies.validation.repose_return.repeated_pulses import (
     SOLVER_TOLERANCE,
     slopes_of_automaton,

@@ -40,7 +40,7 @@ from bcre_studies.models.bcre import problem_of
 from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED, EFFECTIVE, Model
 from bcre_studies.observables.outcome import Outcome
 from bcre_studies.reporting import style
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 from bcre_studies.validation.second_critical_angle.climb import (
     Bracket,
     climb,

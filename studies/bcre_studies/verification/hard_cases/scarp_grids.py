@@ -19,7 +19,7 @@ from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE, MODELS, Model
 from bcre_studies.observables.fronts import scarps
 from bcre_studies.scenes.scene import load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

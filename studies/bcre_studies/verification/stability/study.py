@@ -43,7 +43,7 @@ from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON, BCRE, MODELS, Look
 from bcre_studies.reporting import style
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 from bcre_studies.verification.stability.amplification import Numbers, Variant, rule_with, stable
 from bcre_studies.verification.stability.growth import (
     PDE,
