@@ -23,7 +23,7 @@ import numpy as np
 import pandas as pd
 
 import fuzz
-from bcre_studies.models.simulate import rule_of
+from bcre_studies.models.automaton import rule_of
 from bcre_studies.running.run import require_runnable, run_scene
 from bcre_studies.scenes.scene import SceneError, load
 from bcre_studies.system import pickles

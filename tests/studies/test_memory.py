@@ -8,16 +8,15 @@ import sys
 import psutil
 import pytest
 
-from bcre_studies.running import memory_needed
-from bcre_studies.running import run as run_module
+from bcre_studies.models.registry import MODELS, Model
 from bcre_studies.running.run import require_runnable, run_scene
 from bcre_studies.scenes import tables
 from bcre_studies.scenes.scene import SceneError, load
 from bcre_studies.system import memory
 
 CASES = [
-    ("ca", 101, ["cells=3000", "until=0.001", "step=auto"]),
-    ("pde", 101, ["solver.cells=2000", "until=0.001"]),
+    ("ca", 101, ["cells=30000", "until=0.001", "step=auto"]),
+    ("pde", 101, ["solver.cells=6000", "until=0.001"]),
     ("pde", 2, ["solver.cells=4000", "until=0.0001", "method=BDF"]),
 ]
 
@@ -58,7 +57,7 @@ def test_estimates_are_within_a_factor_of_two_of_the_measured_peaks(tmp_path):
     )
     for (model, frames, changes), measured in zip(CASES, json.loads(ended.stdout), strict=True):
         scene = load("figure2", changes)
-        needed = memory_needed.estimate(scene, model, frames, run_module._finest(scene))
+        needed = MODELS[model].adapter().memory(scene, frames)
         assert measured > 1e7
         assert 0.5 < needed / measured < 2
 
@@ -112,7 +111,7 @@ def test_memory_that_runs_out_after_all_is_told_by_key(monkeypatch):
     def fail(*_):
         raise MemoryError
 
-    monkeypatch.setattr(run_module, "run_automaton", fail)
+    monkeypatch.setattr(Model, "answer", fail)
     with pytest.raises(SceneError, match=r"domain\.cells = 100"):
         run_scene(load("figure2"), "ca", 2)
 
