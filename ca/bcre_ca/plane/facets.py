@@ -54,14 +54,10 @@ def dip(along: Any, diagonal: Any, gate: Any, half: Any, is_straight: bool) -> t
     nothing = along - along
     lower = gated(diagonal, gate)
     middle = half * lower
-    if is_straight:
-        axis, corner = larger(along, nothing), larger(lower, nothing)
-        is_diagonal = half * (corner * corner) > axis * axis
-        beyond = nothing
-    else:
-        beyond = gated(lower - along, gate)
-        is_diagonal = beyond >= along
-        beyond = larger(beyond, nothing)
+    beyond = gated(lower - along, gate)
+    axis, corner = larger(along, nothing), larger(lower, nothing)
+    is_diagonal = either(is_straight, half * (corner * corner) > axis * axis, beyond >= along)
+    beyond = either(is_straight, nothing, larger(beyond, nothing))
     a, b = either(is_diagonal, middle, along), either(is_diagonal, middle, beyond)
     return either(a > nothing, a * a + b * b, nothing), a, b
 

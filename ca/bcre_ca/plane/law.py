@@ -2,8 +2,8 @@ r"""What a cell does, in one place for every flow: exchange, flux, walls, base.
 
     dt E = X(R) (gamma dt/d) (drop - Sc d),     at most h - base
 
-The plain steps call these functions with arrays, the compiled ones with single cells. ``gate``
-is 1 on a face between two cells that hold sand, 0 at a wall, and None where there are no walls.
+The plain steps call these functions with arrays, the compiled ones with single cells. A ``gate``
+between two cells is 1 where both hold sand, 0 at a wall, and None where there are no walls.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numba import types
 from numba.extending import overload, register_jitable
 
 from bcre_ca.exchange import exchanging, settle
@@ -58,12 +59,18 @@ def gated(flow: Any, gate: Any) -> Any:
     return flow * gate
 
 
-@register_jitable
-def gate_between(free: Any, other: Any) -> Any:
-    """Of a face between two cells that hold sand (1) or do not (0)."""
-    if free is None:
-        return None
+def _gate_between(free: Any, other: Any) -> Any:
     return free * other
+
+
+@overload(_gate_between)
+def _gate_between_cells(free, other):  # type: ignore[no-untyped-def]
+    if isinstance(free, types.NoneType):
+        return lambda free, other: None
+    return lambda free, other: free * other
+
+
+gate_between: Any = _gate_between
 
 
 @register_jitable

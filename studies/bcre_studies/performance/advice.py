@@ -24,26 +24,25 @@ import numpy as np
 import pandas as pd
 
 from bcre_studies.advisor.advise import Advice, Effort, advise
-from bcre_studies.advisor.candidate import MODELS, SCHEMES
 from bcre_studies.advisor.deviation import deviation, uncertainty
 from bcre_studies.advisor.pilot import run_model
 from bcre_studies.advisor.question import Question
-from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.claim import Claim, quality_check
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict
-from bcre_studies.models.simulate import Run, frame_times
-from bcre_studies.performance.random_scenes import random_scene
+from bcre_studies.models.registry import BCRE, CANDIDATES, SCHEMES
+from bcre_studies.models.run import Run, frame_times
+from bcre_studies.performance.random_scenes import kind_of, random_scene
 from bcre_studies.performance.record.record import read
 from bcre_studies.reporting import style
 from bcre_studies.scenes.listing import built_in_names
 from bcre_studies.scenes.scene import Scene, load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 from bcre_studies.timing.costs import closures_of, recorded
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-READS_RECORD = True  # the costs
 SCENES = 60
 TOLERANCE = 0.05
 FRAMES = 3
@@ -60,25 +59,11 @@ PILOTS_S = 3.0
 """Seconds of pilots a scene, by the recorded costs."""
 OWN = "two_pulses"
 LADDER = {
-    model: [round(smallest * 2 ** (k / 4)) for k in range(steps)]
-    for model, smallest, steps in (
-        ("upwind", 25, 33),
-        ("calibrated", 25, 25),
-        ("limited", 25, 21),
-        ("pde", 25, 17),
-    )
+    model: [round(25 * 2 ** (k / 4)) for k in range(steps)]
+    for model, steps in zip(CANDIDATES, (33, 25, 21, 17), strict=True)
 }
 """Cells tried of every model to find its cheapest: up to 6400, 1600, 800 and 400."""
 
-LOOKS = {
-    model: {"color": color, "marker": mark, "linestyle": ""}
-    for model, color, mark in (
-        ("upwind", "#b5480f", "o"),
-        ("calibrated", "#c9962b", "D"),
-        ("limited", "#7a5ea8", "v"),
-        ("pde", "#1f5a99", "s"),
-    )
-}
 FEW = 100
 """Cells of the finest pilot of the extrapolated predictions."""
 
@@ -108,10 +93,10 @@ def truth(scene: Scene) -> Truth:
     """BCRE on doubled grids until all that is observed is resolved, or the finest is reached."""
     times = frame_times(scene, FRAMES)
     cells = COARSEST_TRUTH
-    runs = [run_model(scene, "pde", times, n) for n in (cells, 2 * cells)]
+    runs = [run_model(scene, BCRE.name, times, n) for n in (cells, 2 * cells)]
     while True:
         cells = 2 * runs[-1].x.size
-        runs = [*runs[-2:], run_model(scene, "pde", times, cells)]
+        runs = [*runs[-2:], run_model(scene, BCRE.name, times, cells)]
         found = Truth((runs[0], runs[1], runs[2]))
         if cells >= FINEST_TRUTH or all(map(found.resolved, OBSERVED)):
             return found
@@ -174,7 +159,7 @@ def _advised(index: int, scene: Scene, observable: str, true: Truth) -> dict[str
     resolved = true.resolved(observable)
     row: dict[str, Any] = {
         "scene": index,
-        "kind": scene.title.rsplit(" ", 1)[-1],
+        "kind": kind_of(scene),
         "observable": observable,
         "model": "",
         "cells": 0,
@@ -223,7 +208,7 @@ def _all_models(name: str) -> list[dict[str, Any]]:
     true = truth(scene)
     if not true.resolved("R"):
         return [_unjudged(name, scene)]
-    cheapest = [(model, *found) for model in MODELS if (found := _least(scene, model, true))]
+    cheapest = [(model, *found) for model in CANDIDATES if (found := _least(scene, model, true))]
     best = _advice(scene, "R").options[0]
     advised = run_model(scene, best.model, frame_times(scene, FRAMES), best.cells)
     error = deviation(advised, true.run)
@@ -286,7 +271,7 @@ def _met(table: pd.DataFrame, observable: str) -> Claim:
     share = len(met) / len(judged)
     off = (met["true_error"] / met["predicted_error"]).agg(["min", "max"])
     forms = judged["closed_form_error"].dropna()
-    return Claim(
+    return quality_check(
         name=f"tolerance met in {observable}",
         statement=f"The advised model meets a tolerance of {TOLERANCE:.0%} of {observable} in at "
         f"least {MET:.0%} of random scenes.",
@@ -303,7 +288,7 @@ def _foretold(table: pd.DataFrame) -> Claim:
     met = table[table["result"] == "met"]
     share = len(met) / len(table)
     far = (table["cells"] / FEW).max()
-    return Claim(
+    return quality_check(
         name="foretold from coarse pilots",
         statement=f"Where pilots end at {FEW} cells, a scheme that is foretold to meet the "
         f"tolerance on finer ones meets it in at least {MET:.0%} of the cases.",
@@ -320,7 +305,7 @@ def _cheapest(table: pd.DataFrame) -> Claim:
     honest = not (table["result"] == "not told").any()
     worst = judged.loc[judged["dearer"].idxmax()]
     silent = table.loc[table["result"] == "unresolved", "scene"]
-    return Claim(
+    return quality_check(
         name="the cheapest",
         statement="In the built-in scenes and one more the advised model costs at most "
         f"{DEARER:g} times the cheapest that meets the tolerance, and where BCRE does not "
@@ -342,7 +327,7 @@ def _in_time(times: pd.DataFrame) -> Claim:
     advised = options[options["advised"]]
     foretold = times[times["pilots"] == "coarse"]
     share = float(advised["hit"].mean())
-    return Claim(
+    return quality_check(
         name="predicted time",
         statement=f"The predicted time of the advised model is within a factor of 2 of the "
         f"measured one in at least {IN_TIME:.0%} of random scenes.",
@@ -367,10 +352,11 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
         ends = np.array([1e-5, 0.3])
         axis.loglog(ends, ends, color="0.55", linewidth=1.0)
         axis.axhline(TOLERANCE, color="0.55", linestyle=":", linewidth=1.0)
-        for model, look in LOOKS.items():
-            rows = table[table["model"] == model]
+        for name, model in CANDIDATES.items():
+            rows = table[table["model"] == name]
             if len(rows):
-                axis.loglog(rows["predicted_error"], rows["true_error"], label=model, **look)
+                look = model.markers(label=name)
+                axis.loglog(rows["predicted_error"], rows["true_error"], **look)
         axis.set_title(title, loc="left")
         axis.set_xlabel("predicted error")
         axis.set_ylabel("true error")

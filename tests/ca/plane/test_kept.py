@@ -2,7 +2,8 @@
 
 from bcre_ca.plane import kernels
 from bcre_ca.plane.kernels import bounds
-from bcre_ca.plane.kernels.kept import SOURCES, digest_of, kept
+from bcre_ca.plane.kernels.kept import kept
+from bcre_ca.sources import FOLDER, digest_of
 
 
 def file_of(compiled):
@@ -15,11 +16,11 @@ def test_machine_code_of_other_sources_lies_in_other_files():
 
 
 def test_functions_in_use_are_named_by_the_digest_of_the_sources():
-    digest = digest_of(SOURCES)[:16]
+    digest = digest_of(FOLDER)[:16]
     assert digest in file_of(kernels.take_steps)
     assert digest in file_of(kernels.extremes)
-    assert (SOURCES / "plane" / "kernels" / "march.py").exists()
-    assert (SOURCES / "rule.py").exists()
+    assert (FOLDER / "plane" / "kernels" / "march.py").exists()
+    assert (FOLDER / "rule.py").exists()
 
 
 def test_digest_follows_every_source_file(tmp_path):

@@ -80,7 +80,7 @@ HEAP = {"v": 1.0, "D": 0.2, "gamma": 2.0, "Sc": 0.5}
 
 @pytest.fixture(scope="module")
 def reference():
-    return radial_heap(**HEAP, rate=5.0, disc=2.0, T=100.0, length=16.0, dr=1 / 32)
+    return radial_heap(**HEAP, rate=5.0, disc=2.0, T=100.0, length=16.0, dr=1 / 16)
 
 
 def heap_error(flow, d, reference):

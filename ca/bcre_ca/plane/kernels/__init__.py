@@ -8,8 +8,9 @@ lies beyond the ends; ``bounds`` looks for what limits the step; ``storage`` hol
 from __future__ import annotations
 
 from bcre_ca.plane.kernels import bounds, facets, march, split4, tilted
-from bcre_ca.plane.kernels.kept import SOURCES, digest_of, kept
+from bcre_ca.plane.kernels.kept import kept
 from bcre_ca.plane.kernels.work import Form
+from bcre_ca.sources import SOURCES
 
 _FACETS = Form(facets.REACH, facets.CARRIED, together=2)
 
@@ -21,9 +22,7 @@ FORMS = {
 }
 
 
-_SOURCES = digest_of(SOURCES)
-
-take_steps = kept(march.take_steps, _SOURCES)
-extremes = kept(bounds.extremes, _SOURCES)
+take_steps = kept(march.take_steps, SOURCES)
+extremes = kept(bounds.extremes, SOURCES)
 
 __all__ = ["FORMS", "extremes", "take_steps"]

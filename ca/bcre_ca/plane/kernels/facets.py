@@ -10,7 +10,8 @@ from __future__ import annotations
 import numba
 import numpy as np
 
-from bcre_ca.plane.facets import FACETS, dip
+from bcre_ca.plane.facets import FACETS
+from bcre_ca.plane.kernels.steepest import steepest_of_cells
 from bcre_ca.plane.kernels.storage import COLUMNS, PERIODIC, ROWS
 from bcre_ca.plane.kernels.views import at, copy, fill, part
 from bcre_ca.plane.law import changed, eroded, gate_between, gated
@@ -67,7 +68,18 @@ def take(f, carry, i, lo, hi, K, flow):  # type: ignore[no-untyped-def]
     base = part(f.base, row, lo, hi)
     gate = gate_between(at(part(f.free, row, lo - 1, lo), 0), at(free, 0))
     from_left = gated(K.across * (f.R[row, lo - 1] - R[0]), gate)
-    for j in range(hi - lo):
+    rows = (h, R, R_below, flux, inflow, outflow, steepness, free, free_below, base)
+    _cells(*rows, from_left, K)
+    if i == f.N - 1 and f.ends != PERIODIC:
+        copy(carry[INFLOW + (i + 1) % 3], carry[0])
+
+
+@numba.njit(error_model="numpy")
+def _cells(  # type: ignore[no-untyped-def]
+    h, R, R_below, flux, inflow, outflow, steepness, free, free_below, base, from_left, K
+):
+    """A function of its own, of rows: inside :func:`take` it would not be vectorised."""
+    for j in range(h.size):
         here = R[j]
         gate = gate_between(at(free, j), at(free_below, j))
         out = gated(K.diffusion * (here - R_below[j]), gate)
@@ -78,8 +90,6 @@ def take(f, carry, i, lo, hi, K, flow):  # type: ignore[no-untyped-def]
         h[j], R[j] = changed(h[j], here, inflow[j] - outflow[j], diffused, erosion, K)
         flux[j] = out
         from_left = to_right
-    if i == f.N - 1 and f.ends != PERIODIC:
-        copy(carry[INFLOW + (i + 1) % 3], carry[0])
 
 
 @numba.njit(error_model="numpy")
@@ -94,37 +104,23 @@ def excesses(f, carry, i, lo, hi, K, flow):  # type: ignore[no-untyped-def]
 def _look(f, carry, i, place, lo, hi, K, flow):  # type: ignore[no-untyped-def]
     """The steepest facets of row i, and what its cells send along and diagonally."""
     row = i + ROWS
+    lower, upper = lo - 1, hi + 1
+    rows = (
+        f.h[row - 1, lower:upper],
+        f.h[row, lower:upper],
+        f.h[row + 1, lower:upper],
+        part(f.free, row - 1, lower, upper),
+        part(f.free, row, lower, upper),
+        part(f.free, row + 1, lower, upper),
+    )
+    R, squared, sent = (
+        f.R[row, lo:hi],
+        carry[STEEPNESS + place % 2, lo:hi],
+        carry[OUTFLOW + place % 2, lo:hi],
+    )
     a, b, facet = carry[ALONG, lo:hi], carry[DIAGONAL, lo:hi], carry[FACET, lo:hi]
-    squared, sent = carry[STEEPNESS + place % 2, lo:hi], carry[OUTFLOW + place % 2, lo:hi]
-    zero = K.courant - K.courant
-    for number in range(8):
-        axis_row, axis_column = row + AXIS_I[number], AXIS_J[number]
-        corner_row, corner_column = row + CORNER_I[number], CORNER_J[number]
-        h, R = f.h[row, lo:hi], f.R[row, lo:hi]
-        h_axis = f.h[axis_row, lo + axis_column : hi + axis_column]
-        h_corner = f.h[corner_row, lo + corner_column : hi + corner_column]
-        free = part(f.free, row, lo, hi)
-        free_axis = part(f.free, axis_row, lo + axis_column, hi + axis_column)
-        free_corner = part(f.free, corner_row, lo + corner_column, hi + corner_column)
-        for j in range(hi - lo):
-            gate = gate_between(at(free, j), at(free_axis, j))
-            along = gated(h[j] - h_axis[j], gate)
-            gate = gate_between(gate, at(free_corner, j))
-            found, found_a, found_b = dip(along, h[j] - h_corner[j], gate, K.half, flow.straight)
-            best = zero if number == 0 else squared[j]
-            is_better = found > best
-            squared[j] = found if is_better else best
-            a[j] = found_a if is_better else (zero if number == 0 else a[j])
-            b[j] = found_b if is_better else (zero if number == 0 else b[j])
-            facet[j] = number if is_better else (zero if number == 0 else facet[j])
-    R = f.R[row, lo:hi]
-    for j in range(hi - lo):
-        steepness = np.sqrt(squared[j])
-        squared[j] = steepness
-        speed = K.courant * R[j] / steepness if steepness > K.least_drop else zero
-        a[j] = speed * (a[j] - b[j])
-        b[j] = speed * b[j]
-        sent[j] = a[j] + b[j]
+    steepest_of_cells(*rows, squared, a, b, facet, K.half, flow.straight)
+    _sent_by_cells(R, squared, a, b, sent, K)
     if f.sides == PERIODIC:
         first, last = COLUMNS, COLUMNS + f.M - 1
         if lo == first and hi == last + 1:
@@ -134,13 +130,27 @@ def _look(f, carry, i, place, lo, hi, K, flow):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(error_model="numpy")
+def _sent_by_cells(R, squared, a, b, sent, K):  # type: ignore[no-untyped-def]
+    """From the drops a and b: what is sent along and diagonally, and both; and the steepness."""
+    zero = K.courant - K.courant
+    for j in range(R.size):
+        steepness = np.sqrt(squared[j])
+        squared[j] = steepness
+        speed = K.courant * R[j] / steepness if steepness > K.least_drop else zero
+        along, diagonal = speed * (a[j] - b[j]), speed * b[j]
+        a[j], b[j] = along, diagonal
+        sent[j] = along + diagonal
+
+
+@numba.njit(error_model="numpy")
 def _send(f, carry, sent, i, lo, hi):  # type: ignore[no-untyped-def]
     """Put what the cells of row i send into the rows about it; the one below is begun with it."""
     fill(carry[INFLOW + (i + 1) % 3], 0, carry.shape[1], 0)
+    rows = INFLOW + (i - 1) % 3, INFLOW + i % 3, INFLOW + (i + 1) % 3
     wide = 1 if f.sides == PERIODIC and hi - lo == f.M else 0
     for j in range(lo - wide, hi + wide):
         along, diagonal = carry[sent, j], carry[sent + 1, j]
         if along != 0 or diagonal != 0:
             facet = int(carry[sent + 2, j])
-            carry[INFLOW + (i + AXIS_I[facet]) % 3, j + AXIS_J[facet]] += along
-            carry[INFLOW + (i + CORNER_I[facet]) % 3, j + CORNER_J[facet]] += diagonal
+            carry[rows[1 + AXIS_I[facet]], j + AXIS_J[facet]] += along
+            carry[rows[1 + CORNER_I[facet]], j + CORNER_J[facet]] += diagonal

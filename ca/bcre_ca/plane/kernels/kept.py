@@ -2,22 +2,10 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numba
-
-SOURCES = Path(__file__).parents[2]
-
-
-def digest_of(folder: Path) -> str:
-    """Of all source files in a folder and those below it."""
-    digest = hashlib.sha256()
-    for path in sorted(folder.rglob("*.py")):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()
 
 
 def kept(function: Callable[..., Any], sources: str) -> Any:

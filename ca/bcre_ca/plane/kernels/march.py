@@ -18,9 +18,12 @@ import numba
 from bcre_ca.plane.coefficients import Facets, Split4, Tilted, by_flow
 from bcre_ca.plane.kernels import facets, split4, tilted
 from bcre_ca.plane.kernels.edges import join, mirror
-from bcre_ca.plane.kernels.storage import COLUMNS, OPEN, PERIODIC, ROWS
-from bcre_ca.plane.kernels.views import copy, fill
+from bcre_ca.plane.kernels.storage import COLUMNS, OPEN, PERIODIC, ROWS, Field
+from bcre_ca.plane.kernels.views import borrowed, copy, fill
 from bcre_ca.plane.kernels.windows import cut, look, widen
+from bcre_ca.plane.kernels.work import Work
+from bcre_ca.plane.sources import Cells
+from bcre_ca.sums import add
 
 _begin = by_flow({Tilted: tilted.begin, Split4: split4.begin, Facets: facets.begin})
 _take = by_flow({Tilted: tilted.take, Split4: split4.take, Facets: facets.take})
@@ -29,12 +32,12 @@ WHOLE, BEGIN, SLAB, WEDGE, END = range(5)
 
 
 @numba.njit(error_model="numpy")
-def add(sums, term):  # type: ignore[no-untyped-def]
-    """Compensated sum, so that the balance of mass holds to rounding after any number of steps."""
-    corrected = term - sums[1]
-    total = sums[0] + corrected
-    sums[1] = (total - sums[0]) - corrected
-    sums[0] = total
+def _is_positive(heights):  # type: ignore[no-untyped-def]
+    for t in range(heights.shape[0]):
+        for source in range(heights.shape[1]):
+            if heights[t, source] > 0:
+                return True
+    return False
 
 
 @numba.njit(error_model="numpy")
@@ -42,11 +45,7 @@ def _begin_steps(f, cells, heights, w):  # type: ignore[no-untyped-def]
     """Make ready for so many steps: what lies beyond the ends, the windows, the slabs."""
     if f.ends == PERIODIC:
         join(f)
-    is_pouring = False
-    for t in range(heights.shape[0]):
-        for source in range(heights.shape[1]):
-            is_pouring = is_pouring or heights[t, source] > 0
-    top, foot = widen(f, w.wet, cells, is_pouring, len(heights), w.windows)
+    top, foot = widen(f, w.wet, cells, _is_positive(heights), len(heights), w.windows)
     return cut(w.windows, top, foot, len(w.carry), 2 * w.reach * (len(heights) + 2), w.cuts)
 
 
@@ -129,6 +128,36 @@ def _wedge(s, f, K, cells, heights, w):  # type: ignore[no-untyped-def]
         _swap_beside(f, middle, half, w.kept[s], t, w.reach)
 
 
+@numba.njit(error_model="numpy")
+def _borrowed_field(f):  # type: ignore[no-untyped-def]
+    layers = borrowed(f.h), borrowed(f.R), borrowed(f.free), borrowed(f.base)
+    return Field(layers[0], layers[1], layers[2], layers[3], f.N, f.M, f.ends, f.sides, f.fall)
+
+
+@numba.njit(error_model="numpy")
+def _borrowed_cells(cells):  # type: ignore[no-untyped-def]
+    return Cells(
+        borrowed(cells.first),
+        borrowed(cells.column),
+        borrowed(cells.source),
+        borrowed(cells.height),
+    )
+
+
+@numba.njit(error_model="numpy")
+def _borrowed_work(w):  # type: ignore[no-untyped-def]
+    return Work(
+        borrowed(w.wet),
+        borrowed(w.windows),
+        borrowed(w.cuts),
+        borrowed(w.carry),
+        borrowed(w.kept),
+        borrowed(w.sums),
+        w.reach,
+        w.together,
+    )
+
+
 def take_steps(part, s, f, K, cells, heights, w):  # type: ignore[no-untyped-def]
     """All steps as a WHOLE, or a part of those together, which several threads can share out.
 
@@ -136,6 +165,7 @@ def take_steps(part, s, f, K, cells, heights, w):  # type: ignore[no-untyped-def
     out at the cut below slab s, and END looks where it is wet now. Compiled by
     :func:`bcre_ca.plane.kernels.kept.kept`.
     """
+    f, cells, w = _borrowed_field(f), _borrowed_cells(cells), _borrowed_work(w)
     if part == WHOLE:
         for done in range(0, len(heights), w.together):
             some = heights[done : done + w.together]

@@ -65,18 +65,35 @@ def take(f, carry, i, lo, hi, K, flow):  # type: ignore[no-untyped-def]
     from_left = drop * (speed_left if drop > 0 else speed[0]) + gated(
         K.across * (f.R[row, lo - 1] - R[0]), gate
     )
-    for j in range(hi - lo):
-        here, h_here = R[j], h[j]
+    rows = (h, h_below, R, R_below, flux, speed, speed_below, steepness, free, free_below, base)
+    _cells(*rows, from_left, K)
+
+
+@numba.njit(error_model="numpy")
+def _cells(  # type: ignore[no-untyped-def]
+    h,
+    h_below,
+    R,
+    R_below,
+    flux,
+    speed,
+    speed_below,
+    steepness,
+    free,
+    free_below,
+    base,
+    from_left,
+    K,
+):
+    """A function of its own, of rows: inside :func:`take` it would not be vectorised."""
+    for j in range(flux.size):
+        here, h_here, sent = R[j], h[j], speed[j]
         gate = gate_between(at(free, j), at(free_below, j))
-        drop = gated(h_here - h_below[j], gate)
-        out = drop * (speed[j] if drop > 0 else speed_below[j]) + gated(
-            K.diffusion * (here - R_below[j]), gate
-        )
+        drop, other = gated(h_here - h_below[j], gate), speed_below[j]
+        out = drop * (sent if drop > 0 else other) + gated(K.diffusion * (here - R_below[j]), gate)
         gate = gate_between(at(free, j), at(free, j + 1))
-        drop = gated(h_here - h[j + 1], gate)
-        to_right = drop * (speed[j] if drop > 0 else speed[j + 1]) + gated(
-            K.across * (here - R[j + 1]), gate
-        )
+        drop, other = gated(h_here - h[j + 1], gate), speed[j + 1]
+        to_right = drop * (sent if drop > 0 else other) + gated(K.across * (here - R[j + 1]), gate)
         erosion = eroded(here, steepness[j] - K.repose_drop, h_here, at(base, j), K)
         h[j], R[j] = changed(h_here, here, flux[j] - out, from_left - to_right, erosion, K)
         flux[j] = out
@@ -111,8 +128,15 @@ def _steepness_into(f, to_speed, to_steepness, i, lo, hi, K):  # type: ignore[no
     free = part(f.free, row, lo - 1, hi + 1)
     free_above, free_below = part(f.free, row - 1, lo, hi), part(f.free, row + 1, lo, hi)
     speed, steepness = to_speed[lo:hi], to_steepness[lo:hi]
+    _steepness_of_cells(h, above, below, free, free_above, free_below, R, speed, steepness, K)
+
+
+@numba.njit(error_model="numpy")
+def _steepness_of_cells(  # type: ignore[no-untyped-def]
+    h, above, below, free, free_above, free_below, R, speed, steepness, K
+):
     zero = K.courant - K.courant
-    for j in range(hi - lo):
+    for j in range(R.size):
         here, is_free = h[j + 1], at(free, j + 1)
         up = larger(gated(here - above[j], gate_between(is_free, at(free_above, j))), zero)
         down = larger(gated(here - below[j], gate_between(is_free, at(free_below, j))), zero)

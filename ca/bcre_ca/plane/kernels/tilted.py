@@ -44,7 +44,13 @@ def take(f, carry, i, lo, hi, K, flow):  # type: ignore[no-untyped-def]
     if i == f.N - 1 and f.ends != PERIODIC:
         _take_last(h, R, flux, free, base, from_left, K, f.ends == OPEN)
         return
-    for j in range(hi - lo):
+    _cells(h, h_below, R, R_below, flux, free, free_below, base, from_left, K)
+
+
+@numba.njit(error_model="numpy")
+def _cells(h, h_below, R, R_below, flux, free, free_below, base, from_left, K):  # type: ignore[no-untyped-def]
+    """A function of its own, of rows: inside :func:`take` it would not be vectorised."""
+    for j in range(h.size):
         here = R[j]
         gate = gate_between(at(free, j), at(free_below, j))
         out = gated(K.outgoing * here - K.diffusion * R_below[j], gate)

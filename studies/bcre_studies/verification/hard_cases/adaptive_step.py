@@ -13,14 +13,14 @@ import pandas as pd
 
 import bcre_ca
 from bcre_ca import kernels
-from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.claim import Claim, quality_check
 from bcre_studies.comparison.difference import relative_difference
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict
-from bcre_studies.models.simulate import rule_of
+from bcre_studies.models.automaton import rule_of
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 SCENES: dict[str, dict[str, float]] = {
     "figure1": {},
@@ -80,7 +80,7 @@ def claim(table: pd.DataFrame) -> Claim:
         for row in table.itertuples()
     )
     agrees = (table["verdict"] == str(Verdict.AGREE)).all()
-    return Claim(
+    return quality_check(
         name="steps that adapt",
         statement="A step that follows its bounds gives the R of a fixed step within the errors of "
         "the two.",
