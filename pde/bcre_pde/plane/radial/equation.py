@@ -3,8 +3,9 @@ r"""BCRE about an axis as a py-pde equation: heaps, silos, cones.
     dR/dt + (1/r) d/dr (r (v n R - D dR/dr)) = E + w        dh/dt = -E
     E = gamma R (abs(dh/dr) - Sc)
 
-Sand rolls along the steepest descent, that is outwards (n = 1), or, where grains are told to slow
-down on gentle slopes s, by n = S/sqrt(S^2 + s^2), S = -dh/dr. w is what a source lets fall.
+Sand rolls along the steepest descent: outwards (n = 1) where the surface falls outwards or is
+level, inwards (n = -1) in a hollow. As BCRE has no solution where n jumps, n falls from 1 to -1 as
+the slope against the grains rises from 0 to a small s. A source lets w fall.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ class BCRE(Marched):
     material: the coefficients; kappa must be 0.
     grid: rings from r = 0, at least 8.
     closed: whether a wall stands at the rim.
-    slowing: s, the slope below which grains slow down, >= 0.
+    turning: s, the slope against which grains turn back, > 0.
     most_evaluations: how often the right-hand side may be evaluated.
     """
 
@@ -43,15 +44,15 @@ class BCRE(Marched):
         self,
         material: Material,
         grid: PolarSymGrid,
+        turning: float,
         closed: bool = False,
-        slowing: float = 0.0,
         most_evaluations: float = math.inf,
     ) -> None:
         (cells,) = grid.shape
         super().__init__(self.state(grid, np.zeros(cells), np.zeros(cells)), most_evaluations)
         self.dr = float(grid.discretization[0])
         self.material = material
-        self.slowing = slowing
+        self.turning = turning
         self.supply = np.zeros(cells)
         self._coefficients = fluxes.Coefficients(
             v=material.v,
@@ -61,7 +62,7 @@ class BCRE(Marched):
             saturation=material.saturation,
             dr=self.dr,
             closed=closed,
-            slowing=slowing,
+            turning=turning,
         )
 
     @staticmethod
@@ -76,7 +77,8 @@ class BCRE(Marched):
         if source is not None:
             edges = self.dr * np.arange(self.supply.size + 1)
             covered = np.diff(np.minimum(edges, source.radius) ** 2)
-            self.supply[:] = source.rate / (math.pi * source.radius**2) * covered / np.diff(edges**2)
+            falling = source.rate / (math.pi * source.radius**2)
+            self.supply[:] = falling * covered / np.diff(edges**2)
 
     def rate(self, layers: Array, out: Array) -> None:
         """Write the time derivative of h, R and ends, shape (3, N), into ``out``."""
@@ -85,13 +87,12 @@ class BCRE(Marched):
     def largest_explicit_step(self, largest_R: float) -> float:
         """The bound of the line; in the innermost ring drift counts twice.
 
-        Where grains slow down, R and h make waves of the speed sqrt(gamma Sc v R/s) on flat ground.
+        Where grains turn back, R and h make waves of the speed sqrt(2 gamma Sc v R/s) besides.
         """
         m = self.material
         wet = exchanging.py_func(largest_R, m.saturation)
         fastest = max(2 * m.v, m.gamma * wet)
-        if self.slowing > 0:
-            fastest += math.sqrt(m.gamma * m.Sc * m.v * wet / self.slowing)
+        fastest += math.sqrt(2 * m.gamma * m.Sc * m.v * wet / self.turning)
         rate = 32 / 15 * fastest / self.dr + 272 / 45 * m.D / self.dr**2
         return 2.78 / rate if rate > 0 else math.inf
 

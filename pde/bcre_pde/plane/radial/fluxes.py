@@ -3,9 +3,7 @@ r"""The compiled right-hand side of radially symmetric BCRE: conservative, of hi
 In q = r R, which is what a ring holds, and with S = abs(h_r),
 
     q_t = -G_r + r (E + w)        r h_t = -r E
-    G = v n q - D (q_r - q/r)     E = X(R) gamma (S - Sc)      n = S_f/sqrt(S_f^2 + s^2)
-
-S_f = -h_r on a face and s the slope below which grains slow down; n = 1 where s = 0.
+    G = v n q - D (q_r - q/r)     E = X(R) gamma (S - Sc)      n = 1 - 2 max(0, min(h_r/s, 1))
 
 * h and R are means over the cells (rings), so that 2 pi dr sum(r (h + R)) changes by the source and
   by the flux through the rim alone. Means of r R along r are means of q along a line.
@@ -43,7 +41,7 @@ class Coefficients(NamedTuple):
     saturation: float | None
     dr: float
     closed: bool
-    slowing: float
+    turning: float
 
 
 @_compiled
@@ -80,7 +78,7 @@ def to_means(points, bend, out):  # type: ignore[no-untyped-def]
 
 @_compiled
 def _extend(row, beyond, closed, dr):  # type: ignore[no-untyped-def]
-    """Fill the ghosts beyond the rim: a mirror, or a surface that goes on at the slope ``beyond``."""
+    """Fill the ghosts beyond the rim: a mirror, or a row that falls at the slope ``beyond``."""
     cells = row.size - GHOSTS
     for ghost in range(GHOSTS):
         if closed:
@@ -92,10 +90,8 @@ def _extend(row, beyond, closed, dr):  # type: ignore[no-untyped-def]
 @_compiled
 def _towards(h, face, K):  # type: ignore[no-untyped-def]
     """n on a face: 1 where grains roll outwards, -1 inwards."""
-    if K.slowing == 0.0:
-        return 1.0
-    drop = (27 * (h[face - 1] - h[face]) - (h[max(face - 2, 0)] - h[face + 1])) / (24 * K.dr)
-    return drop / np.sqrt(drop * drop + K.slowing * K.slowing)
+    climb = (27 * (h[face] - h[face - 1]) - (h[face + 1] - h[max(face - 2, 0)])) / (24 * K.dr)
+    return 1 - 2 * min(max(climb / K.turning, 0.0), 1.0)
 
 
 @_compiled
@@ -139,8 +135,6 @@ def _steepest(h, i, K):  # type: ignore[no-untyped-def]
         above = face_value(h[i - 2], h[i - 1], h[i], h[i + 1], h[i + 2])
         below = face_value(h[i - 3], h[i - 2], h[i - 1], h[i], h[i + 1])
         inwards = above - below
-    if K.slowing == 0.0:
-        return max(outwards, 0.0)
     return max(outwards, inwards, 0.0)
 
 
@@ -179,9 +173,7 @@ def entry(sources: str):  # type: ignore[no-untyped-def]
         for i in range(cells):
             slope = _steepest(h, i, K) - K.Sc * K.dr
             r = (i + 0.5) * K.dr
-            gained[i] = r * exchange(
-                means[i] / r, -slope, 0.0, K.gamma / K.dr, None, K.saturation
-            )
+            gained[i] = r * exchange(means[i] / r, -slope, 0.0, K.gamma / K.dr, None, K.saturation)
         to_means(gained, bend, means)
         supplied = 0.0
         for i in range(cells):

@@ -48,8 +48,7 @@ class Problem:
     radius: the disc is 0 <= r <= radius; finite, > 0.
     rim: ``"open"`` (sand goes over it) or ``"closed"`` (a wall).
     source: what falls onto it, if anything does.
-    slowing: slope below which grains slow down, >= 0; if it is 0 they roll outwards at v even on
-        flat ground, and up any slope against them that the surface may come to.
+    turning: slope s against which grains have turned back, > 0; steps shorten as sqrt(s).
     """
 
     initial: Callable[[Array], tuple[Array, Array]]
@@ -57,19 +56,19 @@ class Problem:
     radius: float
     rim: Rim = "open"
     source: Source | None = None
-    slowing: float = 0.0
+    turning: float = 0.05
 
     def __post_init__(self) -> None:
         _positive("radius", self.radius)
+        _positive("turning", self.turning)
         if self.rim not in get_args(Rim):
             raise ValueError(f"rim = {self.rim!r}: must be one of {get_args(Rim)}")
-        if not (math.isfinite(self.slowing) and self.slowing >= 0):
-            raise ValueError(f"slowing = {self.slowing!r}: must be a finite number >= 0")
         if self.material.kappa != 0:
             raise ValueError(f"kappa = {self.material.kappa!r}: must be 0 about an axis")
         if self.source is not None and self.source.radius > self.radius:
             raise ValueError(
-                f"source radius = {self.source.radius!r}: must be at most the radius, {self.radius!r}"
+                f"source radius = {self.source.radius!r}: must be at most that of the disc, "
+                f"{self.radius!r}"
             )
 
 
@@ -104,12 +103,15 @@ class Solution:
         return np.array([math.fsum(ring * h) + math.fsum(ring * R) for h, R in frames])
 
 
-def ring_means(profile: Callable[[Array], Array], radius: float, cells: int) -> Array:
-    """Means of a function of r over each of the rings, by five Gaussian points in each."""
+def ring_means(
+    layers: Callable[[Array], tuple[Array, Array]], radius: float, cells: int
+) -> tuple[Array, Array]:
+    """Means of two functions of r over each of the rings, by five Gaussian points in each."""
     nodes, weights = np.polynomial.legendre.leggauss(5)
     r = radius / cells * (np.arange(cells)[:, None] + (nodes + 1) / 2)
-    values = np.asarray(profile(r.ravel()), dtype=float).reshape(r.shape)
-    return np.asarray((values * r * weights).sum(axis=1) / (r * weights).sum(axis=1))
+    h, R = (np.asarray(layer, dtype=float).reshape(r.shape) for layer in layers(r.ravel()))
+    weights = r * weights / (r * weights).sum(axis=1, keepdims=True)
+    return np.asarray((h * weights).sum(axis=1)), np.asarray((R * weights).sum(axis=1))
 
 
 def _positive(name: str, value: float) -> None:

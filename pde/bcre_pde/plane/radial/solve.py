@@ -41,9 +41,7 @@ def solve(
         raise ValueError(f"tolerance = {tolerance!r}: must lie between 0 and 1")
     if cells < SMALLEST_GRID:
         raise ValueError(f"cells = {cells!r}: must be at least {SMALLEST_GRID}")
-    h, R = (
-        ring_means(lambda r, k=k: problem.initial(r)[k], problem.radius, cells) for k in (0, 1)
-    )
+    h, R = ring_means(problem.initial, problem.radius, cells)
     if not (np.isfinite(h).all() and np.isfinite(R).all()):
         raise ValueError("the initial h and R must be finite")
     from pde import PolarSymGrid
@@ -52,9 +50,8 @@ def solve(
     from bcre_pde.plane.radial.equation import BCRE
 
     grid = PolarSymGrid(problem.radius, cells)
-    equation = BCRE(
-        problem.material, grid, problem.rim == "closed", problem.slowing, MOST_EVALUATIONS
-    )
+    closed = problem.rim == "closed"
+    equation = BCRE(problem.material, grid, problem.turning, closed, MOST_EVALUATIONS)
     state = BCRE.state(grid, h, R)
     equation.pour(problem.source)
     equation.rate(np.array(state.data), np.zeros(state.data.shape))  # compiles, before the clock

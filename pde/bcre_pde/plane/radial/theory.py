@@ -35,9 +35,7 @@ def filling_layer(r: ArrayLike, w: float, a: float, material: Material) -> Array
 
 def filling_slope(r: ArrayLike, a: float, material: Material) -> Array:
     """S in a filling silo, outside its source; it does not depend on the rate."""
-    return np.asarray(
-        material.Sc - 1 / (material.gamma * filling_layer(r, 1.0, a, material))
-    )
+    return np.asarray(material.Sc - 1 / (material.gamma * filling_layer(r, 1.0, a, material)))
 
 
 def rill_growth_rate(material: Material, R0: float, S: float, wavenumber: float) -> float:

@@ -36,17 +36,19 @@ def test_filling_silo_is_flat_from_where_its_slope_would_pass_zero():
 
 def test_rills_grow_as_the_equations_say_to_first_order():
     """R = R0 (1 + ...), h across a slope S: the steepest descent turns by h_y/S."""
-    l, k, R0, S = sp.symbols("l k R0 S", positive=True)
+    rate, k, R0, S = sp.symbols("l k R0 S", positive=True)
     v, D, gamma, Sc = sp.symbols("v D gamma Sc", positive=True)
     # R_t = v (R0/S) h_yy + D R_yy + sigma R, h_t = -sigma R, for amplitudes of e^(l t + i k y)
     sigma = gamma * (S - Sc)
     growth = sp.Matrix([[sigma - D * k**2, -v * R0 * k**2 / S], [-sigma, 0]])
-    expected = l**2 + l * (D * k**2 - sigma) - sigma * v * R0 * k**2 / S
-    assert sp.simplify((l * sp.eye(2) - growth).det() - expected) == 0
+    expected = rate**2 + rate * (D * k**2 - sigma) - sigma * v * R0 * k**2 / S
+    assert sp.simplify((rate * sp.eye(2) - growth).det() - expected) == 0
     material = Material(1.0, 0.1, 0.3, 0.5)
     found = theory.rill_growth_rate(material, 0.2, 0.9, 3.0)
     numbers = {k: 3.0, R0: 0.2, S: 0.9, v: 1.0, D: 0.1, gamma: 0.3, Sc: 0.5}
-    assert found == pytest.approx(max(float(sp.re(x)) for x in sp.solve(expected.subs(numbers), l)))
+    assert found == pytest.approx(
+        max(float(sp.re(x)) for x in sp.solve(expected.subs(numbers), rate))
+    )
 
 
 def test_without_diffusion_the_shortest_rills_grow_fastest():
