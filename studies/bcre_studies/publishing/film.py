@@ -1,0 +1,114 @@
+"""Frames of every built-in scene in both models, for the page's player.
+
+The automaton runs as the scene says. BCRE, as it stands and with the automaton's own D_eff and
+kappa_eff, is solved on cells four and two times smaller; the finer solution is averaged over the
+automaton's cells, and the change from the coarser one is shown as BCRE's own error.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+import bcre_pde
+from bcre_studies.comparison.compare import SHARE, significant
+from bcre_studies.models.simulate import (
+    effective_problem_of,
+    frame_times,
+    problem_of,
+    run_automaton,
+)
+from bcre_studies.reporting.page.packing import pack
+from bcre_studies.scenes.domain import Array
+from bcre_studies.scenes.listing import built_in_names
+from bcre_studies.scenes.scene import load
+from bcre_studies.sweeps.each import each
+
+FRAMES = 81
+FINER = 4
+"""BCRE's cells in one of the automaton's; half as many for the estimate of its error."""
+WIDEST = 200
+"""Cells shown; a scene on more is averaged to at most so many."""
+DIGITS = 2
+
+
+def films() -> list[dict[str, Any]]:
+    """One film a built-in scene, in the order of their names; see :func:`film`."""
+    return each(film, built_in_names(), "scenes to watch")
+
+
+def film(name: str) -> dict[str, Any]:
+    """A scene as the page's script reads it.
+
+    ``models`` holds u = h + Sc x above its lowest point and R, packed; ``difference``, ``left``
+    and ``error`` are relative L1 differences of R by frame: automaton from BCRE, automaton from
+    BCRE with D_eff and kappa_eff, and BCRE from itself on cells twice as long. None stands where
+    there is nothing to divide by.
+    """
+    scene = load(name)
+    times = frame_times(scene, FRAMES)
+    automaton = run_automaton(scene, times)
+    cells = automaton.x.size
+    shown = cells if cells <= WIDEST else next(n for n in range(WIDEST, 0, -1) if cells % n == 0)
+
+    def solved(problem: bcre_pde.Problem, finer: int) -> tuple[Array, Array]:
+        solution = bcre_pde.solve(problem, times, finer * cells)
+        return _averaged(solution.h, shown), _averaged(solution.R, shown)
+
+    layers = {
+        "ca": (_averaged(automaton.h, shown), _averaged(automaton.R, shown)),
+        "pde": solved(problem_of(scene), FINER),
+        "pde effective": solved(effective_problem_of(scene), FINER),
+    }
+    coarser = solved(problem_of(scene), FINER // 2)[1]
+    R = {model: both[1] for model, both in layers.items()}
+    difference = _differences(R["ca"], R["pde"])
+    error = _differences(coarser, R["pde"])
+    x = (np.arange(shown) + 0.5) * scene.domain.length / shown
+    floor = min(float((h + scene.material.Sc * x).min()) for h, _ in layers.values())
+    return {
+        "name": name,
+        "title": scene.title,
+        "length": scene.domain.length,
+        "cells": shown,
+        "t": [significant(t, 5) for t in times],
+        "models": {
+            model: _packed(h + scene.material.Sc * x - floor, layer)
+            for model, (h, layer) in layers.items()
+        },
+        "difference": difference,
+        "left": _differences(R["ca"], R["pde effective"]),
+        "error": error,
+        "unresolved": [
+            own is not None and gap is not None and own > SHARE * max(gap, SHARE)
+            for own, gap in zip(error, difference, strict=True)
+        ],
+    }
+
+
+def _packed(u: Array, R: Array) -> dict[str, Any]:
+    return {
+        "u": pack(u),
+        "R": pack(R, each=True),
+        "ends": [significant(float(u.min()), 4), significant(float(u.max()), 4)],
+    }
+
+
+def _averaged(values: Array, cells: int) -> Array:
+    """(T, N) averaged over ``cells`` larger cells, of which N is a multiple."""
+    return np.asarray(values.reshape(values.shape[0], cells, -1).mean(axis=2))
+
+
+def _differences(R: Array, reference: Array) -> list[float | None]:
+    """Relative L1 difference in every frame, to two digits; None where nothing rolls any more."""
+    least = 1e-6 * float(reference[0].mean())
+    found: list[float | None] = []
+    for row, other in zip(R, reference, strict=True):
+        size = float(other.mean())
+        gap = float(np.abs(row - other).mean())
+        found.append(significant(gap / size, DIGITS) if size > least else None)
+    return found
+
+
+

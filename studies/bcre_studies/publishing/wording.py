@@ -1,0 +1,57 @@
+"""Numbers as a reader wants them in a sentence."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+import pandas as pd
+
+
+def percent(share: float) -> str:
+    """A share as a percentage of at most two digits: 53 %, 0.7 %, below 0.01 %."""
+    value = 100 * share
+    if value == 0:
+        return "0 %"
+    if value < 0.01:
+        return "below 0.01 %"
+    return f"{value:.0f} %" if value >= 9.95 else f"{float(f'{value:.1g}'):g} %"
+
+
+def number(value: float, digits: int = 3) -> str:
+    """So many significant digits, a true minus, no exponent where a reader can do without."""
+    text = f"{value:.{digits}g}"
+    if "e" in text and 1e-4 <= abs(value) < 1e7:
+        text = f"{float(text):f}".rstrip("0").rstrip(".")
+    mantissa, _, exponent = text.partition("e")
+    if exponent:
+        text = f"{mantissa}e{int(exponent)}"
+    return text.replace("-", "−")
+
+
+def fixed(value: float, places: int = 2) -> str:
+    """So many decimal places, a true minus."""
+    return f"{value:.{places}f}".replace("-", "−")
+
+
+def span(values: Sequence[float], digits: int = 2) -> str:
+    """``2 to 61``, or one number where all are alike."""
+    low, high = (number(value, digits) for value in (min(values), max(values)))
+    return low if low == high else f"{low} to {high}"
+
+
+def listed(items: Sequence[str]) -> str:
+    """``a, b and c``."""
+    return " and ".join([", ".join(items[:-1]), items[-1]] if len(items) > 1 else items)
+
+
+def figure_name(scene: str) -> str:
+    """figure1 as the paper calls it, figure 1; other scenes without underscores."""
+    return re.sub(r"^figure(\d)", r"figure \1", scene).replace("_", " ")
+
+
+def of(table: pd.DataFrame, **wanted: object) -> pd.DataFrame:
+    """The rows whose columns have these values."""
+    for column, value in wanted.items():
+        table = table[table[column] == value]
+    return table

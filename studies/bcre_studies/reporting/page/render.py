@@ -1,0 +1,58 @@
+"""The page put together: templates, the style sheet and the script in one text."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import jinja2
+from markupsafe import Markup
+
+HERE = Path(__file__).parent
+SCRIPT = ("rule", "frames", "chart", "player", "live", "tables", "main")
+"""Parts of the page's script, in the order in which they need each other."""
+
+
+def render(template: str, **content: object) -> str:
+    """A page from its template; what is HTML escapes every text put into it."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(HERE / "templates"),
+        autoescape=jinja2.select_autoescape(["html.j2"]),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters["in_cell"] = in_cell
+    environment.filters["sentence"] = sentence
+    environment.filters["html"] = Markup  # for what this project made: SVG, MathML
+    environment.filters["as_json"] = as_json
+    return environment.get_template(template).render(**content)
+
+
+def style_sheet() -> Markup:
+    """The style sheet, for a ``<style>`` element."""
+    return Markup((HERE / "page.css").read_text(encoding="utf-8"))
+
+
+def script() -> Markup:
+    """The script's parts as one strict function, for a ``<script>`` element."""
+    parts = [(HERE / "script" / f"{name}.js").read_text(encoding="utf-8") for name in SCRIPT]
+    return Markup('(() => {\n"use strict";\n' + "\n".join(parts) + "})();\n")
+
+
+def as_json(value: Any) -> Markup:
+    """Data for a ``<script type="application/json">`` element, which no text in it can close."""
+    text = json.dumps(value, ensure_ascii=True, separators=(",", ":"), allow_nan=False)
+    return Markup(text.replace("<", r"\u003c"))
+
+
+def in_cell(text: str) -> str:
+    """A bar would end the cell of a Markdown table."""
+    return text.replace("|", r"\|")
+
+
+def sentence(text: str) -> str:
+    """With a capital at its start; the full stop is the page's."""
+    return (text[:1].upper() + text[1:]).rstrip(".")

@@ -1,0 +1,26 @@
+// Recorded layers, unpacked: 16-bit levels between a low and a high value, base64.
+
+const LEVELS = 4095;
+
+function unpacked(field, cells) {
+  const text = atob(field.data), bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
+  const levels = new Uint16Array(bytes.length / 2);
+  for (let i = 0; i < levels.length; i++) levels[i] = bytes[2 * i] | (bytes[2 * i + 1] << 8);
+  return (frame) => {
+    const at = field.low.length > 1 ? frame : 0;
+    const low = field.low[at], span = field.high[at] - low;
+    const values = new Float64Array(cells);
+    for (let i = 0; i < cells; i++) values[i] = low + levels[frame * cells + i] / LEVELS * span;
+    return values;
+  };
+}
+
+function readScene(name) {
+  const scene = JSON.parse(document.getElementById(`frames-${name}`).textContent);
+  for (const model of Object.values(scene.models)) {
+    model.u = unpacked(model.u, scene.cells);
+    model.R = unpacked(model.R, scene.cells);
+  }
+  return scene;
+}

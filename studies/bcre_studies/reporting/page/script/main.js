@@ -1,0 +1,28 @@
+// What runs when the page is there. Tables and players are set up when they come near the screen.
+
+function whenNear(element, action) {
+  const watch = new IntersectionObserver((seen) => {
+    if (!seen.some((entry) => entry.isIntersecting)) return;
+    watch.disconnect();
+    action();
+  }, { rootMargin: "600px" });
+  watch.observe(element);
+}
+
+const redraws = [];
+
+for (const [id, start] of [["watch", startPlayer], ["try", startLive]]) {
+  const root = document.querySelector(`#${id} [data-part="stage"]`);
+  if (root) whenNear(root, () => redraws.push(start(root)));
+}
+document.querySelectorAll("table.sortable").forEach((table) => {
+  const holder = table.closest("details");
+  if (holder) holder.addEventListener("toggle", () => makeSortable(table), { once: true });
+  else makeSortable(table);
+});
+
+const redraw = () => redraws.forEach((draw) => draw());
+window.addEventListener("resize", redraw);
+window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
+
+window.bcre = { fold, step, stableStep, excessOfAutomaton, excessOfBcre, fittedSlope, unpacked };

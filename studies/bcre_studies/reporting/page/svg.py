@@ -1,0 +1,265 @@
+"""Figures as parts of the page: one SVG a panel, so that panels stand side by side or in a column.
+
+Matplotlib draws; here its SVG is cut into panels, its ids become unique on the page, its texts stay
+texts in the page's own fonts, and its colours become variables of the style sheet, which the dark
+scheme changes. Legends below the panels become HTML (:func:`keys`).
+"""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+from xml.etree import ElementTree
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.legend import Legend
+
+SVG = "{http://www.w3.org/2000/svg}"
+HREF = "{http://www.w3.org/1999/xlink}href"
+MARGIN = 3.0
+"""Points left round a panel."""
+
+COLOURS = {
+    "#000000": "var(--ink)",
+    "#b0b0b0": "var(--grid)",
+    "#ffffff": "var(--paper)",
+    "#b5480f": "var(--ca)",
+    "#1f5a99": "var(--pde)",
+    "#3b8f5a": "var(--eff)",
+    "#7a5ea8": "var(--violet)",
+    "#c9962b": "var(--ochre)",
+    "#8c8c8c": "var(--quiet)",
+    "#808080": "var(--quiet)",
+    "#7f7f7f": "var(--quiet)",
+    "#333333": "var(--ink)",
+    "#404040": "var(--ink)",
+    "#fdf0d9": "var(--r1)",
+    "#f9d9a6": "var(--r2)",
+    "#f2b872": "var(--r3)",
+    "#e58f45": "var(--r4)",
+    "#cc672a": "var(--r5)",
+    "#a5441c": "var(--r6)",
+    "#752a17": "var(--r7)",
+    "#451713": "var(--r8)",
+    "#1f5a98": "var(--less2)",
+    "#7ba7d1": "var(--less1)",
+    "#e2976b": "var(--more1)",
+    "#b54810": "var(--more2)",
+}
+"""Colours that the style sheet names; all others stay as they are."""
+
+_COLOUR = re.compile(r"#[0-9a-f]{6}")
+_NUMBER = re.compile(r"-?\d+\.\d+")
+_FAMILY = re.compile(r"font: ([\w ]*?)([\d.]+px)[^;]*")
+
+
+@dataclass(frozen=True)
+class Key:
+    """An entry of a legend: a sample of the line or marker as SVG, and its label as HTML."""
+
+    sample: str
+    label: str
+
+
+def panels(figure: Figure, prefix: str) -> list[str]:
+    """The figure's panels as SVG elements, in reading order.
+
+    Parameters
+    ----------
+    prefix: stands before every id, so that it is unique on the page.
+    """
+    root = _saved(figure)
+    drawn = root.find(f"{SVG}g")
+    assert drawn is not None
+    height = float(root.attrib["viewBox"].split()[3])
+    shared = [*root.iter(f"{SVG}clipPath"), *root.iter(f"{SVG}pattern")]
+    clips = {part.attrib["id"]: part for part in shared}
+    groups = {part.attrib["id"]: part for part in drawn}
+    found: list[str] = []
+    for axes, group in zip(figure.axes, _axes_of(groups), strict=True):
+        box = _box(axes, height)
+        if box is not None:
+            found.append(_panel(group, box, clips, prefix, axes.get_title(loc="left")))
+    return found
+
+
+def keys(figure: Figure) -> list[Key]:
+    """The entries of the legend that belongs to the whole figure."""
+    entries: list[Key] = []
+    for legend in figure.legends:
+        texts = [text.get_text() for text in legend.get_texts()]
+        for handle, text in zip(legend.legend_handles, texts, strict=True):
+            entries.append(Key(_sample(handle), in_html(text)))
+    return entries
+
+
+def in_html(label: str) -> str:
+    r"""A label with Matplotlib's mathematics as HTML: ``$D_\mathrm{eff}$`` gets its index."""
+    text = label.replace("&", "&amp;").replace("<", "&lt;").replace(r"\kappa", "κ")
+    text = re.sub(r"_\\mathrm\{(\w+)\}", r"<sub>\1</sub>", text)
+    text = re.sub(r"\^\{?(-?\w+)\}?", r"<sup>\1</sup>", text)
+    return text.replace("$", "")
+
+
+def _saved(figure: Figure) -> ElementTree.Element:
+    """As SVG with its texts as texts; legends of the whole figure are left out."""
+    hidden = [legend for legend in figure.legends if legend.get_visible()]
+    figure.draw_without_rendering()  # the layout with its legend, as in the file
+    figure.set_layout_engine("none")
+    for legend in hidden:
+        legend.set_visible(False)
+    content = io.StringIO()
+    try:
+        with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "bcre"}):
+            figure.savefig(content, format="svg", metadata={"Date": None})
+    finally:
+        for legend in hidden:
+            legend.set_visible(True)
+    return ElementTree.fromstring(content.getvalue())
+
+
+def _axes_of(groups: dict[str, ElementTree.Element]) -> Iterator[ElementTree.Element]:
+    number = 1
+    while f"axes_{number}" in groups:
+        yield groups[f"axes_{number}"]
+        number += 1
+
+
+def _box(axes: Axes, height: float) -> tuple[float, float, float, float] | None:
+    """x, y, width, height in points, y downwards; None for a panel that shows nothing."""
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    if not axes.axison and not axes.has_data() and not axes.texts:
+        return None
+    box = axes.get_tightbbox()
+    if box is None or box.width <= 0:
+        return None
+    scale = 72 / figure.dpi
+    left, right = box.x0 * scale - MARGIN, box.x1 * scale + MARGIN
+    top, bottom = height - box.y1 * scale - MARGIN, height - box.y0 * scale + MARGIN
+    return left, top, right - left, bottom - top
+
+
+def _panel(
+    group: ElementTree.Element,
+    box: tuple[float, float, float, float],
+    clips: dict[str, ElementTree.Element],
+    prefix: str,
+    title: str,
+) -> str:
+    attributes = {
+        "class": "panel",
+        "viewBox": " ".join(f"{value:.1f}" for value in box),
+        "role": "img",
+        "aria-label": title or "panel",
+        "style": f"--w:{box[2]:.0f}",
+    }
+    panel = ElementTree.Element("svg", attributes)
+    used = {name for part in group.iter() for name in _references(part)}
+    definitions = [clips[name] for name in sorted(used & set(clips))]
+    if definitions:
+        ElementTree.SubElement(panel, "defs").extend(definitions)
+    panel.append(group)
+    _flatten(panel)
+    wanted = {name for part in panel.iter() for name in _references(part)}
+    for part in panel.iter():
+        _clean(part, prefix, wanted)
+    text = ElementTree.tostring(panel, encoding="unicode")
+    return re.sub(r">\s+<", "><", text)
+
+
+def _references(part: ElementTree.Element) -> list[str]:
+    values = [part.attrib.get(HREF, ""), part.attrib.get("clip-path", "")]
+    values.append(part.attrib.get("style", ""))
+    return [name for value in values for name in re.findall(r"#([\w.-]+)", value)]
+
+
+def _flatten(part: ElementTree.Element) -> None:
+    """Groups without an attribute that shows lift their children up; comments go."""
+    children: list[ElementTree.Element] = []
+    for child in part:
+        _flatten(child)
+        bare = child.tag == f"{SVG}g" and not set(child.attrib) - {"id"}
+        children += list(child) if bare else [child]
+    for child in list(part):
+        part.remove(child)
+    part.extend(children)
+
+
+def _clean(part: ElementTree.Element, prefix: str, wanted: set[str]) -> None:
+    """One element: no name space, short numbers, ids that are used and unique, named colours."""
+    part.tag = part.tag.removeprefix(SVG)
+    for name, value in list(part.attrib.items()):
+        del part.attrib[name]
+        if name == "id":
+            if value in wanted:
+                part.attrib["id"] = f"{prefix}-{value}"
+            continue
+        if name == HREF:
+            name, value = "href", f"#{prefix}-{value[1:]}"
+        elif name == "clip-path":
+            value = value.replace("#", f"#{prefix}-")
+        elif name == "style":
+            value = _styled(value)
+        elif name in ("d", "x", "y", "points", "transform", "width", "height"):
+            value = _short(value)
+        part.attrib[name] = value
+
+
+def _styled(style: str) -> str:
+    named = _COLOUR.sub(lambda found: COLOURS.get(found[0], found[0]), style)
+    return _FAMILY.sub(r"font: \g<1>\g<2> var(--sans)", _short(named)).replace("; ", ";")
+
+
+def _short(value: str) -> str:
+    """Numbers to a hundredth of a point, white space once."""
+
+    def round_off(found: re.Match[str]) -> str:
+        number = f"{float(found[0]):.2f}".rstrip("0").rstrip(".")
+        return "0" if number in ("-0", "") else number
+
+    return " ".join(_NUMBER.sub(round_off, value).split())
+
+
+def _sample(handle: Any) -> str:
+    """The line, marker or patch of a legend's entry, 34 by 12 points."""
+    figure = Figure(figsize=(34 / 72, 12 / 72))
+    legend = Legend(figure, [handle], [""], loc="center", frameon=False, handlelength=2.6,
+                    borderpad=0, handletextpad=0)
+    figure.legends.append(legend)
+    figure.set_layout_engine("none")
+    content = io.StringIO()
+    with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "bcre"}):
+        figure.savefig(content, format="svg", metadata={"Date": None})
+    root = ElementTree.fromstring(content.getvalue())
+    shapes = [part for part in root.iter(f"{SVG}g") if part.attrib.get("id") == "legend_1"]
+    panel = ElementTree.Element(
+        "svg", {"class": "sample", "viewBox": "0 0 34 12", "aria-hidden": "true"}
+    )
+    panel.extend(shapes)
+    _inline_markers(panel)
+    _flatten(panel)
+    for part in panel.iter():
+        _clean(part, "", set())
+    return re.sub(r">\s+<", "><", ElementTree.tostring(panel, encoding="unicode"))
+
+
+def _inline_markers(part: ElementTree.Element) -> None:
+    """A marker used once is drawn where it is used, so that a sample needs no ids."""
+    shapes = {shape.attrib["id"]: shape for shape in part.iter(f"{SVG}path") if "id" in shape.attrib}
+    for parent in list(part.iter()):
+        for child in list(parent):
+            if child.tag == f"{SVG}defs":
+                parent.remove(child)
+            elif child.tag == f"{SVG}use":
+                shape = shapes[child.attrib[HREF][1:]]
+                place = f"translate({child.attrib['x']} {child.attrib['y']})"
+                child.tag = f"{SVG}path"
+                style = child.attrib.get("style", "")
+                child.attrib.clear()
+                child.attrib |= {"d": shape.attrib["d"], "transform": place, "style": style}
