@@ -41,7 +41,8 @@ def films() -> list[dict[str, Any]]:
 def film(name: str) -> dict[str, Any]:
     """A scene as the page's script reads it.
 
-    ``models`` holds u = h + Sc x above its lowest point and R, packed; ``difference``, ``left``
+    ``models`` holds, packed, u = h + Sc x at the start above its lowest point, how it changes, and
+    R; ``difference``, ``left``
     and ``error`` are relative L1 differences of R by frame: automaton from BCRE, automaton from
     BCRE with D_eff and kappa_eff, and BCRE from itself on cells twice as long. None stands where
     there is nothing to divide by.
@@ -89,7 +90,8 @@ def film(name: str) -> dict[str, Any]:
 
 def _packed(u: Array, R: Array) -> dict[str, Any]:
     return {
-        "u": pack(u),
+        "start": pack(u[:1]),
+        "change": pack(u - u[0], each=True),
         "R": pack(R, each=True),
         "ends": [significant(float(u.min()), 4), significant(float(u.max()), 4)],
     }

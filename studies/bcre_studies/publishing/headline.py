@@ -245,10 +245,10 @@ def answers(found: Headline) -> list[Answer]:
 def _rule(found: Headline) -> str:
     most = max(found.diffusion, key=lambda row: row.acting / row.D)
     return (
-        "It is the simplest, first-order scheme of BCRE, and its cells of length d take part in "
-        "the physics: they add v d/2 to the diffusion D and γ d/2 to the curvature term κ, which "
-        f"BCRE may have and the paper’s rule leaves out. In {figure_name(most.figure)} D = "
-        f"{number(most.D)} acts as {number(most.acting)}."
+        "It is the simplest, first-order scheme of BCRE. Its cells, of length d, do physics of "
+        "their own: they add v d/2 to the diffusion D of the rolling sand (v is its speed) and "
+        "smooth the surface by γ d/2 (γ is the rate of exchange). In "
+        f"{figure_name(most.figure)}, D = {number(most.D)} acts as {number(most.acting)}."
     )
 
 
@@ -258,10 +258,11 @@ def _change(found: Headline) -> str:
     if not judged:
         return "BCRE is unresolved in every figure, so nothing can be said."
     apart = listed([f"{percent(gap.difference)} in {figure_name(gap.figure)}" for gap in judged])
-    left = listed([percent(gap.left) for gap in judged])
+    shares = list(dict.fromkeys(percent(gap.left) for gap in judged))
+    left = f"{shares[0]} is left in each" if len(shares) == 1 else f"{listed(shares)} are left"
     text = (
-        f"At the paper’s parameters the rolling layers differ by {apart}. Give BCRE the cells’ "
-        f"share of diffusion and curvature as well, and {left} is left."
+        f"At the paper’s parameters the rolling layers differ by {apart}. Give BCRE what the cells "
+        f"add, and {left}."
     )
     if unjudged:
         text += f" {listed(unjudged).capitalize()} cannot be judged: BCRE is unresolved there."
@@ -271,15 +272,15 @@ def _change(found: Headline) -> str:
 def _critical(found: Headline) -> str:
     slopes = found.slopes
     lead = (
-        "Both models have one: a slope Sd from which on any disturbance, however small, brings "
-        "the whole slope down. At figure 1’s parameters it lies "
+        "Both have a slope Sd above which any disturbance, however small, brings the whole slope "
+        "down. In figure 1 it lies "
     )
     if abs(slopes.automaton / slopes.bcre - 1) <= SMALL:
         return lead + f"{fixed(slopes.automaton)} above repose in both."
     nearer = abs(slopes.finer - slopes.bcre) < abs(slopes.automaton - slopes.bcre)
     finer = f"; cells a quarter as long give {fixed(slopes.finer)}" if nearer else ""
     return (
-        lead + f"{fixed(slopes.automaton)} above the repose slope in the automaton and "
+        lead + f"{fixed(slopes.automaton)} above the repose slope Sc in the automaton and "
         f"{fixed(slopes.bcre)} in BCRE{finer}. In between the two disagree."
     )
 
@@ -288,13 +289,13 @@ def _pulse(found: Headline) -> str:
     pulses = found.pulses
     start, end = pulses.most_steepened
     text = (
-        f"On {pulses.cases} slopes above repose, one pulse brought {pulses.came_down} down to "
-        f"repose (in BCRE {pulses.came_down_bcre}): those where the avalanche climbs to the top."
+        f"Of {pulses.cases} slopes above repose one pulse brought {pulses.came_down} down to it "
+        f"(in BCRE {pulses.came_down_bcre}), where the avalanche climbs to the top."
     )
     if pulses.steeper:
         text += (
-            f" It left {pulses.steeper} steeper than before, from {fixed(start)} to "
-            f"{fixed(end)} above repose at the most."
+            f" It left {pulses.steeper} steeper, at most from {fixed(start)} to {fixed(end)} above "
+            "repose."
         )
     if pulses.below:
         return text + f" {pulses.below} ended below repose."
@@ -306,22 +307,21 @@ def _speed(found: Headline) -> str:
     parts: list[str] = []
     if coarse.won:
         parts.append(
-            f"If an error of {percent(coarse.error)} will do, the automaton is faster in "
-            f"{coarse.won} of {coarse.scenes} scenes, {span(coarse.by)} times."
+            f"Where an error of {percent(coarse.error)} will do: by {span(coarse.by)} times, in "
+            f"{coarse.won} of {coarse.scenes} scenes."
         )
     finite = [value for value in fine.lost_by if math.isfinite(value)]
     if finite:
         parts.append(
-            f"At {percent(fine.error)} BCRE’s solver is faster in {len(fine.lost_by)} of "
-            f"{fine.scenes}, by at least {number(min(finite), 2)} times, since a first-order rule "
-            "needs so many cells."
+            f"At {percent(fine.error)} BCRE’s solver wins {len(fine.lost_by)} of {fine.scenes}, by "
+            f"{number(min(finite), 2)} times or more."
         )
     elif fine.won == fine.scenes:
         parts.append(f"At {percent(fine.error)} it still is, in all {fine.scenes}.")
     if fine.better_won:
         parts.append(
-            f"The same automaton with a second-order or corrected step is faster in "
-            f"{fine.better_won} of {fine.scenes} even there."
+            f"With a corrected step the automaton wins {fine.better_won} of {fine.scenes} even "
+            "there."
         )
     return " ".join(parts) or "Nowhere: BCRE’s solver is the faster at every error asked for."
 

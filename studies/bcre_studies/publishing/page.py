@@ -31,7 +31,7 @@ from bcre_studies.reporting.page import svg
 from bcre_studies.reporting.page.mathml import formula
 from bcre_studies.reporting.page.render import render, script, style_sheet
 from bcre_studies.scenes.scene import load
-from bcre_studies.system.files import replace_file, replace_text
+from bcre_studies.system.files import replace_text
 
 Tables = dict[str, pd.DataFrame]
 
@@ -130,8 +130,9 @@ class Settled(Protocol):
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure as panels, with the entries of its legend."""
+    """A figure whole, as panels, and the entries of its legend."""
 
+    text: str
     panels: list[str]
     keys: list[svg.Key]
 
@@ -142,11 +143,7 @@ def write_pages(
     """Write the pages and pictures into ``folder``, that of the reports."""
     content = page_content(findings, ledger, folder)
     for view in (content["hero"], *content["pictures"]):
-        figure = view["figure"]
-        replace_file(
-            folder / "pictures" / f"{view['name']}.svg",
-            lambda path, figure=figure: style.save(figure, path),
-        )
+        replace_text(folder / "pictures" / f"{view['name']}.svg", view["picture"].text)
     for name in ("index.html", "quality.html", "README.md"):
         replace_text(folder / name, render(f"{name}.j2", **content | _of_page(name, content)))
 
@@ -294,7 +291,8 @@ def _cell(value: object) -> str:
 
 
 def _picture(figure: Figure, name: str) -> Picture:
-    return Picture(svg.panels(figure, name), svg.keys(figure))
+    text = style.svg_of(figure)
+    return Picture(text, svg.panels(figure, text, name), svg.keys(figure))
 
 
 def _csv_files(folder: Path) -> list[Path]:
@@ -377,7 +375,6 @@ def _view(
     return {
         "name": name,
         "title": title,
-        "figure": figure,
         "picture": _picture(figure, name),
         "alt": alt,
         "caption": caption,

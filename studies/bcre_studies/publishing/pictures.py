@@ -22,6 +22,7 @@ from matplotlib.ticker import FuncFormatter, NullLocator
 import bcre_pde
 from bcre_studies.comparison.compare import SHARE, significant
 from bcre_studies.models.simulate import frame_times, problem_of, run_automaton
+from bcre_studies.publishing.wording import figure_name
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import load
@@ -222,7 +223,7 @@ def shares(comparison: pd.DataFrame) -> Figure:
     y = 0.0
     for scene in scenes:
         rows = table[table["scene"] == scene].sort_values("d", ascending=False)
-        axis.annotate(scene.replace("_", " "), (0, y), (-4, 0), weight="bold", va="center",
+        axis.annotate(figure_name(scene), (0, y), (-4, 0), weight="bold", va="center",
                       ha="right", xycoords=axis.get_yaxis_transform(), textcoords="offset points")
         y += 1
         for row in rows.itertuples():
@@ -254,7 +255,7 @@ def _share_row(axis: Axes, y: float, row: Any) -> None:
     axis.plot([row.both, row.nominal], [y, y], **look)
     axis.plot(row.nominal, y, **style.marker("pde", hollow=not resolved, markersize=6))
     axis.plot(row.both, y, marker="^", color=EFFECTIVE, linestyle="", markersize=7)
-    text = f"{row.explained:.0%} explained" if resolved else "unresolved"
+    text = f"{100 * row.explained:.0f} % explained" if resolved else "unresolved"
     axis.annotate(text, (row.nominal, y), (9, 0), textcoords="offset points", va="center",
                   fontsize=8.5, color="0.25" if resolved else "0.5")
 

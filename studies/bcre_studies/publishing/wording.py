@@ -8,6 +8,9 @@ from collections.abc import Sequence
 import pandas as pd
 
 
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
 def percent(share: float) -> str:
     """A share as a percentage of at most two digits: 53 %, 0.7 %, below 0.01 %."""
     value = 100 * share
@@ -25,7 +28,8 @@ def number(value: float, digits: int = 3) -> str:
         text = f"{float(text):f}".rstrip("0").rstrip(".")
     mantissa, _, exponent = text.partition("e")
     if exponent:
-        text = f"{mantissa}e{int(exponent)}"
+        power = f"10{str(int(exponent)).translate(RAISED)}"
+        text = power if mantissa == "1" else f"{mantissa} × {power}"
     return text.replace("-", "−")
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
 import jinja2
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 HERE = Path(__file__).parent
 SCRIPT = ("rule", "frames", "chart", "player", "live", "tables", "main")
@@ -26,6 +27,7 @@ def render(template: str, **content: object) -> str:
     )
     environment.filters["in_cell"] = in_cell
     environment.filters["sentence"] = sentence
+    environment.filters["maths"] = maths
     environment.filters["html"] = Markup  # for what this project made: SVG, MathML
     environment.filters["as_json"] = as_json
     return environment.get_template(template).render(**content)
@@ -46,6 +48,16 @@ def as_json(value: Any) -> Markup:
     """Data for a ``<script type="application/json">`` element, which no text in it can close."""
     text = json.dumps(value, ensure_ascii=True, separators=(",", ":"), allow_nan=False)
     return Markup(text.replace("<", r"\u003c"))
+
+
+def maths(text: str) -> Markup:
+    """Plain text as HTML in which D_eff, Sc, Sd and S0 have their indices and gamma is a letter."""
+    safe = str(escape(text))
+    safe = re.sub(r"\b(\w+)_(eff)\b", r"\1<sub>\2</sub>", safe)
+    safe = re.sub(r"\bS([cd0])\b", r"S<sub>\1</sub>", safe)
+    for name, letter in (("gamma", "γ"), ("kappa", "κ"), ("sigma", "σ")):
+        safe = re.sub(rf"\b{name}\b", letter, safe.replace(f"{name}<sub>", f"{letter}<sub>"))
+    return Markup(safe)
 
 
 def in_cell(text: str) -> str:

@@ -7,17 +7,19 @@ scheme changes. Legends below the panels become HTML (:func:`keys`).
 
 from __future__ import annotations
 
-import io
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 from xml.etree import ElementTree
 
-import matplotlib as mpl
 from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from matplotlib.legend import Legend
+from matplotlib.lines import Line2D
+from matplotlib.markers import MarkerStyle
+from matplotlib.path import Path
+from matplotlib.transforms import Affine2D
 
 SVG = "{http://www.w3.org/2000/svg}"
 HREF = "{http://www.w3.org/1999/xlink}href"
@@ -66,36 +68,37 @@ class Key:
     label: str
 
 
-def panels(figure: Figure, prefix: str) -> list[str]:
+def panels(figure: Figure, text: str, prefix: str) -> list[str]:
     """The figure's panels as SVG elements, in reading order.
 
     Parameters
     ----------
+    text: the figure as SVG, its texts as texts (:func:`bcre_studies.reporting.style.svg_of`).
     prefix: stands before every id, so that it is unique on the page.
     """
-    root = _saved(figure)
+    root = ElementTree.fromstring(text)
     drawn = root.find(f"{SVG}g")
     assert drawn is not None
     height = float(root.attrib["viewBox"].split()[3])
     shared = [*root.iter(f"{SVG}clipPath"), *root.iter(f"{SVG}pattern")]
-    clips = {part.attrib["id"]: part for part in shared}
+    definitions = {part.attrib["id"]: part for part in shared}
     groups = {part.attrib["id"]: part for part in drawn}
     found: list[str] = []
     for axes, group in zip(figure.axes, _axes_of(groups), strict=True):
         box = _box(axes, height)
         if box is not None:
-            found.append(_panel(group, box, clips, prefix, axes.get_title(loc="left")))
+            title = axes.get_title(loc="left")
+            found.append(_panel(group, box, definitions, prefix, title))
     return found
 
 
 def keys(figure: Figure) -> list[Key]:
     """The entries of the legend that belongs to the whole figure."""
-    entries: list[Key] = []
-    for legend in figure.legends:
-        texts = [text.get_text() for text in legend.get_texts()]
-        for handle, text in zip(legend.legend_handles, texts, strict=True):
-            entries.append(Key(_sample(handle), in_html(text)))
-    return entries
+    return [
+        Key(_sample(handle), in_html(text.get_text()))
+        for legend in figure.legends
+        for handle, text in zip(legend.legend_handles, legend.get_texts(), strict=True)
+    ]
 
 
 def in_html(label: str) -> str:
@@ -104,23 +107,6 @@ def in_html(label: str) -> str:
     text = re.sub(r"_\\mathrm\{(\w+)\}", r"<sub>\1</sub>", text)
     text = re.sub(r"\^\{?(-?\w+)\}?", r"<sup>\1</sup>", text)
     return text.replace("$", "")
-
-
-def _saved(figure: Figure) -> ElementTree.Element:
-    """As SVG with its texts as texts; legends of the whole figure are left out."""
-    hidden = [legend for legend in figure.legends if legend.get_visible()]
-    figure.draw_without_rendering()  # the layout with its legend, as in the file
-    figure.set_layout_engine("none")
-    for legend in hidden:
-        legend.set_visible(False)
-    content = io.StringIO()
-    try:
-        with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "bcre"}):
-            figure.savefig(content, format="svg", metadata={"Date": None})
-    finally:
-        for legend in hidden:
-            legend.set_visible(True)
-    return ElementTree.fromstring(content.getvalue())
 
 
 def _axes_of(groups: dict[str, ElementTree.Element]) -> Iterator[ElementTree.Element]:
@@ -148,7 +134,7 @@ def _box(axes: Axes, height: float) -> tuple[float, float, float, float] | None:
 def _panel(
     group: ElementTree.Element,
     box: tuple[float, float, float, float],
-    clips: dict[str, ElementTree.Element],
+    shared: dict[str, ElementTree.Element],
     prefix: str,
     title: str,
 ) -> str:
@@ -161,7 +147,7 @@ def _panel(
     }
     panel = ElementTree.Element("svg", attributes)
     used = {name for part in group.iter() for name in _references(part)}
-    definitions = [clips[name] for name in sorted(used & set(clips))]
+    definitions = [shared[name] for name in sorted(used & set(shared))]
     if definitions:
         ElementTree.SubElement(panel, "defs").extend(definitions)
     panel.append(group)
@@ -205,7 +191,7 @@ def _clean(part: ElementTree.Element, prefix: str, wanted: set[str]) -> None:
         elif name == "clip-path":
             value = value.replace("#", f"#{prefix}-")
         elif name == "style":
-            value = _styled(value)
+            value = _styled(value).replace("url(#", f"url(#{prefix}-")
         elif name in ("d", "x", "y", "points", "transform", "width", "height"):
             value = _short(value)
         part.attrib[name] = value
@@ -227,39 +213,40 @@ def _short(value: str) -> str:
 
 
 def _sample(handle: Any) -> str:
-    """The line, marker or patch of a legend's entry, 34 by 12 points."""
-    figure = Figure(figsize=(34 / 72, 12 / 72))
-    legend = Legend(figure, [handle], [""], loc="center", frameon=False, handlelength=2.6,
-                    borderpad=0, handletextpad=0)
-    figure.legends.append(legend)
-    figure.set_layout_engine("none")
-    content = io.StringIO()
-    with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "bcre"}):
-        figure.savefig(content, format="svg", metadata={"Date": None})
-    root = ElementTree.fromstring(content.getvalue())
-    shapes = [part for part in root.iter(f"{SVG}g") if part.attrib.get("id") == "legend_1"]
-    panel = ElementTree.Element(
-        "svg", {"class": "sample", "viewBox": "0 0 34 12", "aria-hidden": "true"}
-    )
-    panel.extend(shapes)
-    _inline_markers(panel)
-    _flatten(panel)
-    for part in panel.iter():
-        _clean(part, "", set())
-    return re.sub(r">\s+<", "><", ElementTree.tostring(panel, encoding="unicode"))
+    """The line and marker of a legend's entry, or a patch of its colour, 34 by 12 points."""
+    if not isinstance(handle, Line2D):
+        fill = _css(to_hex(handle.get_facecolor()))
+        return _sample_of(f'<rect x="4" y="1" width="26" height="10" style="fill:{fill}"/>')
+    colour, shapes = _css(to_hex(handle.get_color())), []
+    if handle.get_linestyle() != "None":
+        dashes = " ".join(f"{length:g}" for length in handle._dash_pattern[1] or ())
+        style = f"fill:none;stroke:{colour};stroke-width:{handle.get_linewidth():g}"
+        style += f";stroke-dasharray:{dashes}" if dashes else ""
+        shapes.append(f'<path d="M 1 6 L 33 6" style="{style}"/>')
+    if handle.get_marker() not in ("", "None", None):
+        shapes.append(_marker(handle))
+    return _sample_of("".join(shapes))
 
 
-def _inline_markers(part: ElementTree.Element) -> None:
-    """A marker used once is drawn where it is used, so that a sample needs no ids."""
-    shapes = {shape.attrib["id"]: shape for shape in part.iter(f"{SVG}path") if "id" in shape.attrib}
-    for parent in list(part.iter()):
-        for child in list(parent):
-            if child.tag == f"{SVG}defs":
-                parent.remove(child)
-            elif child.tag == f"{SVG}use":
-                shape = shapes[child.attrib[HREF][1:]]
-                place = f"translate({child.attrib['x']} {child.attrib['y']})"
-                child.tag = f"{SVG}path"
-                style = child.attrib.get("style", "")
-                child.attrib.clear()
-                child.attrib |= {"d": shape.attrib["d"], "transform": place, "style": style}
+def _sample_of(shapes: str) -> str:
+    return f'<svg class="sample" viewBox="0 0 34 12" aria-hidden="true">{shapes}</svg>'
+
+
+def _marker(handle: Line2D) -> str:
+    """The marker in the middle of a sample, filled as it is in the figure."""
+    marker = MarkerStyle(handle.get_marker())
+    size = min(float(handle.get_markersize()), 9.0)
+    place = Affine2D().scale(size, -size).translate(17, 6)
+    path = marker.get_path().transformed(marker.get_transform() + place)
+    parts: list[str] = []
+    for points, code in path.iter_segments(curves=True, simplify=False):
+        letter = {Path.MOVETO: "M", Path.LINETO: "L", Path.CURVE3: "Q", Path.CURVE4: "C"}.get(code)
+        parts.append("z" if letter is None else f"{letter} " + " ".join(map("{:.2f}".format, points)))
+    face = handle.get_markerfacecolor()
+    fill = "none" if str(face) == "none" or not marker.is_filled() else _css(to_hex(face))
+    edge = _css(to_hex(handle.get_markeredgecolor()))
+    return f'<path d="{" ".join(parts)}" style="fill:{fill};stroke:{edge}"/>'
+
+
+def _css(colour: str) -> str:
+    return COLOURS.get(colour, colour)

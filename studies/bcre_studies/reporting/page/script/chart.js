@@ -19,12 +19,12 @@ function niceRange(low, high) {
 function shortNumber(value) {
   const size = Math.abs(value);
   if (size < 1e-12) return "0";
-  if (size >= 1e5 || size < 1e-3) return value.toExponential(0).replace("-", "−");
+  if (size >= 1e6 || size < 1e-3) return value.toExponential(1).replace(".0e", "e").replace("e+", "e").replaceAll("-", "−");
   return String(+value.toPrecision(3)).replace("-", "−");
 }
 
-// lines: [{values, colour, dash, width, fill}], all over the same cells; marks: [{x, text}]
-function drawChart(canvas, { lines, length, range, unit, marks = [] }) {
+// lines: [{values, colour, dash, width, fill}], all over the same length
+function drawChart(canvas, { lines, length, range, unit }) {
   const box = canvas.getBoundingClientRect(), ratio = window.devicePixelRatio || 1;
   if (!box.width) return;
   canvas.width = Math.round(box.width * ratio);
@@ -33,7 +33,7 @@ function drawChart(canvas, { lines, length, range, unit, marks = [] }) {
   g.scale(ratio, ratio);
   g.font = `12px ${colour("sans") || "sans-serif"}`;
   const [low, high] = range;
-  const left = 44, right = box.width - 8, top = 10, bottom = box.height - 34;
+  const left = 44, right = box.width - 18, top = 10, bottom = box.height - 34;
   const X = (x) => left + x / length * (right - left);
   const Y = (y) => bottom - (y - low) / (high - low) * (bottom - top);
   g.lineWidth = 1;
@@ -49,7 +49,7 @@ function drawChart(canvas, { lines, length, range, unit, marks = [] }) {
   const dx = niceStep(length, Math.max(2, (right - left) / 90));
   for (let x = 0; x <= length + 1e-9; x += dx) g.fillText(shortNumber(x), X(x), bottom + 5);
   g.textAlign = "right";
-  g.fillText(unit, right, bottom + 19);
+  g.fillText(unit, right + 10, bottom + 19);
   g.save();
   g.beginPath(); g.rect(left, top - 4, right - left, bottom - top + 8); g.clip();
   for (const line of lines) {
@@ -70,8 +70,6 @@ function drawChart(canvas, { lines, length, range, unit, marks = [] }) {
   }
   g.setLineDash([]);
   g.restore();
-  g.fillStyle = colour("quiet"); g.textAlign = "center"; g.textBaseline = "bottom";
-  for (const mark of marks) g.fillText(mark.text, X(mark.x), top + 12);
 }
 
 const LOOKS = {

@@ -19,7 +19,9 @@ function unpacked(field, cells) {
 function readScene(name) {
   const scene = JSON.parse(document.getElementById(`frames-${name}`).textContent);
   for (const model of Object.values(scene.models)) {
-    model.u = unpacked(model.u, scene.cells);
+    const start = unpacked(model.start, scene.cells)(0);
+    model.change = unpacked(model.change, scene.cells);
+    model.u = (frame) => model.change(frame).map((change, i) => start[i] + change);
     model.R = unpacked(model.R, scene.cells);
   }
   return scene;

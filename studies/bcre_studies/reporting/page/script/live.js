@@ -77,7 +77,7 @@ function startLive(root) {
   // As much simulated time as the avalanche needs to cross the slope in some seconds.
   function advance(seconds) {
     let span = seconds * Number(find("speed").value) * SLOPE.length / Math.max(p.v, 0.02) / 10;
-    const until = performance.now() + 12;
+    const until = performance.now() + 12; // what a frame leaves, drawing apart
     while (span > 0 && performance.now() < until) {
       const dt = Math.min(MARGIN * stableStep(pile.h, pile.R, p), span);
       if (!(dt > 0)) break;

@@ -16,8 +16,11 @@ function startPlayer(root) {
     ));
     const R = lines("R");
     const most = Math.max(1e-9, ...R.map((line) => Math.max(...line.values)));
-    drawChart(find("u"), { lines: lines("u"), length: scene.length, range: scene.range,
-      unit: "x, downhill" });
+    const relative = find("relative").checked;
+    const surface = lines(relative ? "change" : "u");
+    const changes = surface.flatMap((line) => [Math.min(...line.values), Math.max(...line.values)]);
+    drawChart(find("u"), { lines: surface, length: scene.length, unit: "x, downhill",
+      range: relative ? niceRange(Math.min(0, ...changes), Math.max(1e-9, ...changes)) : scene.range });
     drawChart(find("R"), { lines: R, length: scene.length, range: niceRange(0, most),
       unit: "x, downhill" });
     scrub.value = frame;
@@ -79,6 +82,7 @@ function startPlayer(root) {
   choice.addEventListener("change", () => { stop(); show(choice.value); });
   speed.addEventListener("change", () => { if (timer !== null) { stop(); start(); } });
   shown.forEach((box) => box.addEventListener("change", draw));
+  find("relative").addEventListener("change", draw);
   root.addEventListener("keydown", (event) => {
     if (event.target.matches("select, button, input") || event.ctrlKey || event.metaKey) return;
     const moves = { ArrowLeft: frame - 1, ArrowRight: frame + 1, Home: 0, End: scene.t.length - 1 };
