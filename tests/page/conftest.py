@@ -42,8 +42,12 @@ def open_page(browser):
         contexts.append(context)
         page = context.new_page()
         page.complaints, page.asked_for = [], []
-        page.on("console", lambda note: page.complaints.append(note.text) if note.type in
-                ("error", "warning") else None)
+        page.on(
+            "console",
+            lambda note: (
+                page.complaints.append(note.text) if note.type in ("error", "warning") else None
+            ),
+        )
         page.on("pageerror", lambda error: page.complaints.append(str(error)))
         page.on("request", lambda request: page.asked_for.append(request.url))
         page.goto((REPORTS / name).as_uri())

@@ -1,4 +1,4 @@
-"""The report's pages in a browser: they work by eye, by keyboard, on every screen, without a word."""
+"""The report's pages in a browser: by eye, by keyboard, on every screen, and on paper."""
 
 from urllib.parse import unquote, urldefrag
 
@@ -227,9 +227,7 @@ def test_rule_in_the_page_is_that_of_the_library_over_a_thousand_steps(open_page
     chance = np.random.default_rng(3)
     h = 90 - 0.9 * p["d"] * np.arange(60) + chance.normal(0, 0.05, 60)
     R = np.abs(chance.normal(0, 1.0, 60))
-    bound = bcre_ca.Rule(**p, dt=1.0).max_stable_step(
-        R.max(), float(-np.diff(h).max() / p["d"])
-    )
+    bound = bcre_ca.Rule(**p, dt=1.0).max_stable_step(R.max(), float(-np.diff(h).max() / p["d"]))
     rule = bcre_ca.Rule(**p, dt=bound / 4)
     page = open_page()
     found = page.evaluate(
@@ -277,7 +275,8 @@ def test_tables_are_sorted_by_their_headings(open_page):
 
     def numbers():
         texts = page.eval_on_selector_all(
-            "#second_critical_angle tbody tr", f"all => all.map((r) => r.cells[{column}].textContent)"
+            "#second_critical_angle tbody tr",
+            f"all => all.map((r) => r.cells[{column}].textContent)",
         )
         return [float(text) for text in texts if text]
 

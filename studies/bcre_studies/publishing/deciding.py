@@ -19,8 +19,11 @@ Tables = Mapping[str, pd.DataFrame]
 
 def deciding_number(evidence: Sequence[tuple[str, Claim]], tables: Mapping[str, Tables]) -> str:
     """The number behind the first of these claims that does not agree, or else behind the first."""
-    known = [(study, claim) for study, claim in evidence
-             if (study, claim.name) in NUMBERS and study in tables]
+    known = [
+        (study, claim)
+        for study, claim in evidence
+        if (study, claim.name) in NUMBERS and study in tables
+    ]
     known.sort(key=lambda item: item[1].verdict is Verdict.AGREE)
     if known:
         study, claim = known[0]
@@ -112,9 +115,7 @@ def _interactive(tables: Tables) -> str:
     budget = tables["budget"]
     own = of(budget, model="automaton, upwind")["cells"]
     bcre = budget[budget["model"].str.startswith("PDE")]["cells"]
-    return (
-        f"cells at 60 frames a second: {span(list(own))}, in BCRE {span(list(bcre))}"
-    )
+    return f"cells at 60 frames a second: {span(list(own))}, in BCRE {span(list(bcre))}"
 
 
 NUMBERS: dict[Key, Callable[[Tables], str]] = {

@@ -111,6 +111,3 @@ def _differences(R: Array, reference: Array) -> list[float | None]:
         gap = float(np.abs(row - other).mean())
         found.append(significant(gap / size, DIGITS) if size > least else None)
     return found
-
-
-

@@ -21,6 +21,8 @@ AT_REPOSE = 0.001
 SMALL = 0.05
 """What counts as agreement in a profile; the studies' own tolerance."""
 COARSE, FINE = 0.1, 0.01
+LEAST = 1e-4
+"""Smaller errors are given as this."""
 
 
 @dataclass(frozen=True)
@@ -187,7 +189,9 @@ def _race(reach: pd.DataFrame, error: float) -> Race:
         if bcre is None:
             continue
         scenes += 1
-        improved = [seconds.get(f"automaton, {name}", math.inf) for name in ("calibrated", "limited")]
+        improved = [
+            seconds.get(f"automaton, {name}", math.inf) for name in ("calibrated", "limited")
+        ]
         better += min(improved) < bcre
         own = seconds.get("automaton, upwind")
         if own is None:  # reached on no grid tried: at least this, or never
@@ -247,7 +251,7 @@ def _rule(found: Headline) -> str:
     return (
         "It is the simplest, first-order scheme of BCRE. Its cells, of length d, do physics of "
         "their own: they add v d/2 to the diffusion D of the rolling sand (v is its speed) and "
-        "smooth the surface by γ d/2 (γ is the rate of exchange). In "
+        "smooth the surface by γ d/2 (γ is the rate at which the layers exchange sand). In "
         f"{figure_name(most.figure)}, D = {number(most.D)} acts as {number(most.acting)}."
     )
 
@@ -335,14 +339,14 @@ def certainty(found: Headline) -> list[Answer]:
     if math.isfinite(worst):
         facts.append(
             Answer(
-                f"± {percent(worst)}" if worst >= 1e-4 else "± 0.01 %",
+                f"± {percent(max(worst, LEAST))}",
                 "is BCRE’s own error in those differences, or less; where it is not small, the "
                 "verdict is “unresolved”",
             )
         )
     facts += [
         Answer(
-            percent(found.slopes.theory_gap) if found.slopes.theory_gap >= 1e-4 else "< 0.01 %",
+            f"± {percent(max(found.slopes.theory_gap, LEAST))}",
             "is the most by which a measured Sd misses its closed form, in either model",
         ),
         Answer(

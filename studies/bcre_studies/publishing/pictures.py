@@ -39,7 +39,7 @@ MORE = ("#e2976b", "#b54810")
 
 def answer(profiles: pd.DataFrame, figure_name: str = "figure2") -> Figure:
     """R(x) of one of the paper's figures at its end, in the automaton and in BCRE."""
-    figure, (axis,) = _panels(1, 1, width=5.6, height=3.7)
+    figure, (axis,) = _panels(1, 1, width=4.7, height=3.2)
     frames = profiles[profiles["figure"] == figure_name]
     last = frames["t"].max()
     start = frames[(frames["t"] == 0) & (frames["model"] == "pde")]
@@ -51,18 +51,30 @@ def answer(profiles: pd.DataFrame, figure_name: str = "figure2") -> Figure:
         look = style.MODELS[model] | {"linewidth": 2.4 if model == "pde effective" else 2.0}
         axis.plot(line["x"], line["R"], **look)
         tops[model] = line.loc[line["R"].idxmax()]
-    label: dict[str, Any] = {"textcoords": "offset points", "fontsize": 10}
+    label: dict[str, Any] = {"textcoords": "offset points", "fontsize": 9.5}
     first = start.loc[start["R"].idxmax()]
     axis.annotate("the pulse at t = 0", (first["x"], first["R"]), (9, -3), color="0.5", **label)
-    axis.annotate("BCRE", (tops["pde"]["x"], tops["pde"]["R"]), (0, 6), ha="center", color=PDE,
-                  weight="bold", **label)
+    axis.annotate(
+        "BCRE",
+        (tops["pde"]["x"], tops["pde"]["R"]),
+        (0, 6),
+        ha="center",
+        color=PDE,
+        weight="bold",
+        **label,
+    )
     half = frames[(frames["t"] == last) & (frames["model"] == "ca")]
     right = half[half["R"] >= tops["ca"]["R"] / 2].iloc[-1]
     axis.annotate("automaton", (right["x"], right["R"]), (8, 6), color=CA, weight="bold", **label)
-    axis.annotate("BCRE with the cells’\nown diffusion: on top of it",
-                  (right["x"], right["R"]), (8, -20), color=EFFECTIVE, **label)
+    axis.annotate(
+        "BCRE with the cells’\nown diffusion: on top of it",
+        (right["x"], right["R"]),
+        (8, -20),
+        color=EFFECTIVE,
+        **label,
+    )
     axis.set(xlabel="distance downhill x", ylabel="rolling layer R", ylim=(0, None))
-    axis.set_xlim(0, float(frames["x"].max()) + 12)
+    axis.set_xlim(0, float(frames["x"].max()) + 18)
     return figure
 
 
@@ -128,8 +140,14 @@ def space_time(found: SpaceTime) -> Figure:
     for axis, R in zip(axes, (found.automaton, found.pde), strict=False):
         axis.contourf(found.x, found.t, _rounded(R), levels=R_LEVELS, colors=RAMP)
     gap = (found.automaton - found.pde) / found.pde.max(axis=1, keepdims=True)
-    axes[2].contourf(found.x, found.t, _rounded(gap), levels=GAP_LEVELS,
-                     colors=(LESS[0], LESS[0], LESS[1], "none", MORE[0], MORE[1], MORE[1]), extend="both")
+    axes[2].contourf(
+        found.x,
+        found.t,
+        _rounded(gap),
+        levels=GAP_LEVELS,
+        colors=(LESS[0], LESS[0], LESS[1], "none", MORE[0], MORE[1], MORE[1]),
+        extend="both",
+    )
     titles = ("Automaton", "BCRE", "Automaton minus BCRE")
     for axis, title in zip(axes, titles, strict=True):
         axis.set_title(title, loc="left", weight="bold")
@@ -141,8 +159,14 @@ def space_time(found: SpaceTime) -> Figure:
         for axis in axes[1:]:
             axis.axhspan(until, UNTIL, facecolor="none", edgecolor="0.5", hatch="///", linewidth=0)
             axis.axhline(until, color="0.5", linewidth=0.8)
-        axes[2].annotate("BCRE unresolved", (37, until), (0, 4), textcoords="offset points",
-                         fontsize=9, backgroundcolor="white")
+        axes[2].annotate(
+            "BCRE unresolved",
+            (37, until),
+            (0, 4),
+            textcoords="offset points",
+            fontsize=9,
+            backgroundcolor="white",
+        )
     return figure
 
 
@@ -171,22 +195,29 @@ def phase_diagram(comparison: pd.DataFrame, paper: tuple[float, float]) -> Figur
     own, finer, bcre = (
         rows[name].astype(float).to_numpy() for name in ("automaton", "automaton d/4", "pde")
     )
-    figure, (axis,) = _panels(1, 1, width=6.4, height=3.9)
+    figure, (axis,) = _panels(1, 1, width=4.7, height=3.7)
     axis.fill_between(pulse, 0, own, color="0.55", alpha=0.08, linewidth=0)
     axis.fill_between(pulse, own, finer, color=CA, alpha=0.30, linewidth=0)
     axis.fill_between(pulse, finer, bcre, color=CA, alpha=0.13, linewidth=0)
     axis.fill_between(pulse, bcre, TOP, color=PDE, alpha=0.10, linewidth=0)
     ca, pde = (style.MODELS[name] for name in ("ca", "pde"))
     axis.plot(pulse, own, **ca, marker="o", label="automaton, d = 1")
-    axis.plot(pulse, finer, color=CA, linestyle=(0, (4, 1, 1, 1)), marker="o",
-              markerfacecolor="white", label="automaton, d = 1/4")
+    axis.plot(
+        pulse,
+        finer,
+        color=CA,
+        linestyle=(0, (4, 1, 1, 1)),
+        marker="o",
+        markerfacecolor="white",
+        label="automaton, d = 1/4",
+    )
     axis.plot(pulse, bcre, **pde, marker="s", label="BCRE")
     middle = math.sqrt(pulse[0] * pulse[-1])
     top = float(np.interp(math.log(middle), np.log(pulse), bcre))
     low = float(np.interp(math.log(middle), np.log(pulse), own))
     quiet: dict[str, Any] = {"ha": "center", "va": "center"}
     axis.text(middle, (top + TOP) / 2, "the whole slope comes down\nin both models", **quiet)
-    axis.text(pulse[0] * 8, float(own[0] + finer[0]) / 2, "only in the automaton", **quiet)
+    axis.text(pulse[0] * 1.6, float(own[0] + finer[0]) / 2, "only in the automaton", va="center")
     axis.text(middle, low / 2, "the pulse passes, the slope stands", **quiet)
     axis.plot(*paper, marker="*", markersize=11, color="0.2", linestyle="")
     axis.annotate("figure 1", paper, (-8, 0), textcoords="offset points", ha="right", va="center")
@@ -195,13 +226,17 @@ def phase_diagram(comparison: pd.DataFrame, paper: tuple[float, float]) -> Figur
     axis.xaxis.set_minor_locator(NullLocator())
     axis.set_xlabel("amplitude of the pulse")
     axis.set_ylabel("slope above repose, S0 − Sc")
-    figure.legend(loc="outside lower center", ncols=3, handlelength=3.4)
+    figure.legend(loc="outside lower center", ncols=3, handlelength=2.6, columnspacing=1.2)
     return figure
 
 
 def _plain(value: float, _: object) -> str:
     """1e-06 as 0.000001 would be read by nobody, 10^-6 needs mathematics; 1e-6 is plain."""
     return f"{value:g}" if value >= 1e-3 else f"1e{math.log10(value):.0f}".replace("-", "−")
+
+
+def _percentage(value: float, _: object) -> str:
+    return f"{100 * value:g} %" if value <= 1 else ""
 
 
 # What the cells explain
@@ -217,14 +252,22 @@ def shares(comparison: pd.DataFrame) -> Figure:
     table = comparison[comparison["split"] == "space"]
     scenes = list(dict.fromkeys(table["scene"]))
     scenes.sort(key=lambda name: -float(table[table["scene"] == name]["nominal"].iloc[0]))
-    figure, (axis,) = _panels(1, 1, width=6.6, height=5.2)
+    figure, (axis,) = _panels(1, 1, width=4.7, height=5.4)
     ticks: list[float] = []
     labels: list[str] = []
     y = 0.0
     for scene in scenes:
         rows = table[table["scene"] == scene].sort_values("d", ascending=False)
-        axis.annotate(figure_name(scene), (0, y), (-4, 0), weight="bold", va="center",
-                      ha="right", xycoords=axis.get_yaxis_transform(), textcoords="offset points")
+        axis.annotate(
+            figure_name(scene),
+            (0, y),
+            (-4, 0),
+            weight="bold",
+            va="center",
+            ha="right",
+            xycoords=axis.get_yaxis_transform(),
+            textcoords="offset points",
+        )
         y += 1
         for row in rows.itertuples():
             _share_row(axis, y, row)
@@ -232,32 +275,51 @@ def shares(comparison: pd.DataFrame) -> Figure:
             labels.append(f"d = {row.d:g}")
             y += 1
         y += 0.5
-    axis.set(xscale="log", ylim=(y - 0.3, -0.8), xlim=(3e-5, 6))
+    axis.set(xscale="log", ylim=(y - 0.3, -0.8), xlim=(3e-5, 20))
     axis.set_yticks(ticks, labels)
     axis.tick_params(axis="y", length=0)
     axis.grid(visible=False, axis="y")
-    axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:g} %"))
+    axis.xaxis.set_major_formatter(FuncFormatter(_percentage))
     axis.set_xlabel("difference of the rolling layer R")
     handles = [
         axis.plot([], [], **style.marker("pde", markersize=6), label="from BCRE")[0],
-        axis.plot([], [], marker="^", color=EFFECTIVE, linestyle="", markersize=7,
-                  label="what is left once the cells are counted")[0],
-        axis.plot([], [], **style.marker("pde", hollow=True, markersize=6),
-                  label="BCRE unresolved")[0],
+        axis.plot(
+            [],
+            [],
+            marker="^",
+            color=EFFECTIVE,
+            linestyle="",
+            markersize=7,
+            label="what is left once the cells are counted",
+        )[0],
+        axis.plot(
+            [], [], **style.marker("pde", hollow=True, markersize=6), label="BCRE unresolved"
+        )[0],
     ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=3)
+    figure.legend(handles=handles, loc="outside lower center", ncols=2)
     return figure
 
 
 def _share_row(axis: Axes, y: float, row: Any) -> None:
     resolved = row.verdict != "unresolved"
-    look = {"linewidth": 2.2, "color": EFFECTIVE if resolved else "0.55", "alpha": 0.45}
+    look: dict[str, Any] = {
+        "linewidth": 2.2,
+        "color": EFFECTIVE if resolved else "0.55",
+        "alpha": 0.45,
+    }
     axis.plot([row.both, row.nominal], [y, y], **look)
     axis.plot(row.nominal, y, **style.marker("pde", hollow=not resolved, markersize=6))
     axis.plot(row.both, y, marker="^", color=EFFECTIVE, linestyle="", markersize=7)
     text = f"{100 * row.explained:.0f} % explained" if resolved else "unresolved"
-    axis.annotate(text, (row.nominal, y), (9, 0), textcoords="offset points", va="center",
-                  fontsize=8.5, color="0.25" if resolved else "0.5")
+    axis.annotate(
+        text,
+        (row.nominal, y),
+        (9, 0),
+        textcoords="offset points",
+        va="center",
+        fontsize=8.5,
+        color="0.25" if resolved else "0.5",
+    )
 
 
 def _panels(rows: int, columns: int, *, width: float, height: float) -> tuple[Figure, list[Axes]]:

@@ -32,7 +32,10 @@ def provenance(tables: Mapping[str, Mapping[str, pd.DataFrame]]) -> list[tuple[s
     if lock.is_file():
         content = lock.read_bytes()
         facts += [
-            ("lock", f"SHA-256 {hashlib.sha256(content).hexdigest()[:SHOWN]}… of requirements.lock"),
+            (
+                "lock",
+                f"SHA-256 {hashlib.sha256(content).hexdigest()[:SHOWN]}… of requirements.lock",
+            ),
             ("versions", ", ".join(_versions(content.decode()))),
         ]
     facts.append(("commit", "git log -1 -- reports/index.html names it"))
@@ -40,14 +43,22 @@ def provenance(tables: Mapping[str, Mapping[str, pd.DataFrame]]) -> list[tuple[s
     if machine is not None:
         which = machine.set_index("what")["which"]
         facts.append(
-            ("times from", ", ".join(str(which[key]) for key in ("processor", "system", "memory")
-                                     if key in which))
+            (
+                "times from",
+                ", ".join(
+                    str(which[key]) for key in ("processor", "system", "memory") if key in which
+                ),
+            )
         )
     seeds = tables.get("random_roughness", {}).get("seeds")
     if seeds is not None:
         numbers = seeds["seed"]
-        facts.append(("seeds", f"{numbers.min()} to {numbers.max()} (roughness); all are constants "
-                      "in the sources"))
+        facts.append(
+            (
+                "seeds",
+                f"{numbers.min()} to {numbers.max()} (roughness); all are constants in the sources",
+            )
+        )
     return facts
 
 

@@ -10,7 +10,16 @@ from dataclasses import dataclass, field
 
 import pandas as pd
 
-from bcre_studies.publishing.wording import figure_name, fixed, listed, number, of, percent, span
+from bcre_studies.publishing.wording import (
+    PERCENT,
+    figure_name,
+    fixed,
+    listed,
+    number,
+    of,
+    percent,
+    span,
+)
 
 Tables = dict[str, pd.DataFrame]
 
@@ -51,9 +60,9 @@ def _paper_figures(tables: Tables) -> list[str]:
         )
     unjudged = sorted(set(profiles["case"]) - set(judged["case"]))
     if unjudged:
+        names = listed([figure_name(name) for name in unjudged]).capitalize()
         sentences.append(
-            f"{listed([figure_name(name) for name in unjudged]).capitalize()} stays unresolved: with κ = 0 its scarp gets steeper "
-            "on every finer grid, so that BCRE has no solution to compare with."
+            f"{names} stays unresolved: with κ = 0 its scarp gets steeper on every finer grid, so that BCRE has no solution to compare with."
         )
     return sentences
 
@@ -61,7 +70,7 @@ def _paper_figures(tables: Tables) -> list[str]:
 def span_of(values: pd.Series) -> str:
     """``39 % to 53 %`` of a column of shares."""
     low, high = percent(float(values.min())), percent(float(values.max()))
-    return low if low == high else f"{low.removesuffix(' %')} to {high}"
+    return low if low == high else f"{low.removesuffix(PERCENT)} to {high}"
 
 
 def _repose_return(tables: Tables) -> list[str]:
@@ -92,15 +101,17 @@ def _repose_return(tables: Tables) -> list[str]:
 def _roughness_decay(tables: Tables) -> list[str]:
     rows = tables["comparison"]
     decay = of(rows, quantity="decay rate of u", d=1.0)
-    longest, at = decay.iloc[0], decay.iloc[(decay["k"] - 0.5).abs().argmin()]
+    at = decay.iloc[(decay["k"] - 0.5).abs().argmin()]
     rough = tables["rough_slope"]
-    left = {model: float(group["RMS"].iloc[-1] / group["RMS"].iloc[0])
-            for model, group in rough.groupby("model")}
+    left = {
+        model: float(group["RMS"].iloc[-1] / group["RMS"].iloc[0])
+        for model, group in rough.groupby("model")
+    }
     return [
         "Waves of one length are laid on the surface, or on the rolling layer, and followed.",
         f"Waves of the surface decay in the automaton, at k = {at['k']:.2g} by "
-        f"{number(float(at['automaton']), 2)} per time; in BCRE with κ = 0 the largest rate found "
-        f"at k = {longest['k']:.2g} is {number(abs(float(longest['pde'])), 1)}, which is its error.",
+        f"{number(float(at['automaton']), 2)} per time; in BCRE with κ = 0 by "
+        f"{number(float(at['pde']), 1)} ± {number(float(at['pde_error']), 1)}.",
         f"A rough slope under a steady layer keeps {percent(left['ca'])} of its roughness in the "
         f"automaton and {percent(left['pde'])} in BCRE.",
     ]
@@ -145,14 +156,14 @@ def _critical(tables: Tables) -> list[str]:
     sd = of(rows, quantity="Sd - Sc")
     thresholds = of(rows, quantity="threshold S0 - Sc").sort_values("pulse")
     first, small, large = sd.iloc[0], thresholds.iloc[0], thresholds.iloc[-1]
+    own, bcre = float(first["automaton"]), float(first["pde"])
     return [
         "Growth at a fixed place, from a layer too thin to change the slope, gives Sd; runs with "
         "finite pulses show from which slope on the avalanche climbs to the top.",
-        f"At figure 1’s parameters Sd − Sc is {fixed(float(first['automaton']))} in the automaton and "
-        f"{fixed(float(first['pde']))} in BCRE; over all parameters it is {span_of(sd['difference'])} "
-        "lower in the automaton.",
-        f"A finite pulse needs less: with an amplitude of {number(float(large['pulse']))} the slope "
-        f"comes down from {fixed(float(large['automaton']))} on in the automaton and from "
+        f"At figure 1’s parameters Sd − Sc is {fixed(own)} in the automaton and {fixed(bcre)} in "
+        f"BCRE; over all parameters it is {span_of(sd['difference'])} lower in the automaton.",
+        f"A finite pulse needs less: with an amplitude of {number(float(large['pulse']))} the "
+        f"slope comes down from {fixed(float(large['automaton']))} on in the automaton and from "
         f"{fixed(float(large['pde']))} on in BCRE, against {fixed(float(small['automaton']))} and "
         f"{fixed(float(small['pde']))} for a vanishing one.",
     ]
@@ -177,13 +188,13 @@ def _printed_rule(tables: Tables) -> list[str]:
     rows = tables["comparison"].astype({"caption": bool})
     readings = rows.groupby(["step", "sign", "order"])["caption"].all()
     met = [key for key, good in readings.items() if good]
-    literal = rows[rows["step"] == "literal"]
+    literal = rows[rows["step"] == "literal"].groupby(["sign", "order"])["caption"].all()
     drift = rows[(rows["order"] == "synchronous") & rows["caption"]]
     return [
         f"The printed rule leaves sign, order and time step open: {len(readings)} readings, each "
         "run on all three figures.",
-        f"{len(met)} of them show what every caption says; with the literal d = dt = 1 "
-        f"{int(literal.groupby(['sign', 'order'])['caption'].all().sum())} do.",
+        f"{len(met)} of them show what every caption says; of those with the literal d = dt = 1 it "
+        f"is {int(literal.sum()) or 'none'}.",
         "Of these the synchronous one alone keeps the drift v that the paper gives."
         if len(drift)
         else "None of these reads every cell from the old state.",
@@ -196,12 +207,12 @@ def _one_variable(tables: Tables) -> list[str]:
     rough = rows[rows["quantity"].str.startswith("RMS")].iloc[0]
     reach = of(rows, quantity="reach uphill").iloc[0]
     stands = bool((undisturbed["automaton"] > 0.001).all())
+    left = number(float(undisturbed["one_variable"].max()))
     return [
         "A pile with one variable, its height, topples wherever it is steeper than Sc.",
-        f"Undisturbed, it falls to S − Sc = {number(float(undisturbed['one_variable'].max()))} from "
-        "every slope tried"
+        f"Undisturbed, it falls to S − Sc = {left} from every slope tried"
         + (", where both two-layer models stand until they are disturbed." if stands else "."),
-        f"It smooths a rough slope to {percent(float(rough['one_variable']))} of its roughness, and "
+        f"It smooths a rough slope to {percent(float(rough['one_variable']))} of its roughness; "
         f"figure 3’s pulse reaches {number(float(reach['one_variable']), 2)} uphill in it, "
         f"{number(float(reach['automaton']), 2)} in the automaton.",
     ]
@@ -424,7 +435,7 @@ STORIES: dict[str, Story] = {
     "hard_cases": Story(
         "What happens in scenes that no model was made for?",
         ("mass: sum(h + R) d + outflow = constant",),
-        "End of every hard scene in every model, and how the scarp of figure 1 depends on the grid.",
+        "End of every hard scene in every model, and how figure 1’s scarp depends on the grid.",
         _hard_cases,
     ),
     "advice": Story(

@@ -7,18 +7,18 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-
+PERCENT = "\N{NO-BREAK SPACE}%"
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def percent(share: float) -> str:
-    """A share as a percentage of at most two digits: 53 %, 0.7 %, below 0.01 %."""
+    """A share as a percentage of two digits at most, but 99.7 % is not 100 %."""
     value = 100 * share
-    if value == 0:
-        return "0 %"
-    if value < 0.01:
-        return "below 0.01 %"
-    return f"{value:.0f} %" if value >= 9.95 else f"{float(f'{value:.1g}'):g} %"
+    if 0 < value < 0.01:
+        return f"below 0.01{PERCENT}"
+    if 99 < value < 100:
+        return f"{min(value, 99.9):.1f}{PERCENT}"
+    return f"{value:.0f}{PERCENT}" if value >= 9.95 else f"{float(f'{value:.1g}'):g}{PERCENT}"
 
 
 def number(value: float, digits: int = 3) -> str:

@@ -5,17 +5,19 @@ from __future__ import annotations
 import inspect
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import jinja2
 import pandas as pd
 
 from bcre_studies.catalog import STUDIES, study
-from bcre_studies.comparison.claim import Claim, Verdict
+from bcre_studies.comparison.claim import Claim
 from bcre_studies.paper_claims import ENTRIES, Entry
+from bcre_studies.publishing.page import write_pages
 from bcre_studies.publishing.store import Tables, tables_of
-from bcre_studies.reporting import style
-from bcre_studies.system.files import REPORTS, replace_file, replace_text, require_writable
+from bcre_studies.reporting.page.picture import Picture
+from bcre_studies.system.files import REPORTS, replace_text, require_writable
 
 VERDICTS = REPORTS / "verdicts.csv"
 
@@ -35,10 +37,10 @@ class Finding:
         """The comparison as a Markdown table."""
         return markdown(self.tables["comparison"])
 
-    @property
-    def comparison_html(self) -> str:
-        """The comparison as an HTML table, its texts escaped."""
-        return str(readable(self.tables["comparison"]).to_html(index=False, border=0))
+    @cached_property
+    def picture(self) -> Picture:
+        """Its figure, drawn once."""
+        return Picture(study(self.name).draw(self.tables), self.name)
 
 
 def find(name: str) -> Finding:
@@ -53,8 +55,7 @@ def write_study(finding: Finding) -> None:
     folder = REPORTS / finding.name
     for key, table in finding.tables.items():
         replace_text(folder / f"{key}.csv", table.to_csv(index=False, lineterminator="\n"))
-    figure = study(finding.name).draw(finding.tables)
-    replace_file(folder / "figure.svg", lambda path: style.save(figure, path))
+    replace_text(folder / "figure.svg", finding.picture.text)
     replace_text(folder / "README.md", render("study.md.j2", finding=finding))
 
 
@@ -81,11 +82,11 @@ def settle(findings: Sequence[Finding]) -> list[Settled]:
 
 
 def write_index(findings: Sequence[Finding]) -> None:
-    """Write the index as Markdown and as a page, the ledger, and record the verdicts."""
+    """Record the verdicts, write the ledger with its evidence, and the report's pages."""
     replace_text(VERDICTS, verdict_table(findings).to_csv(index=False, lineterminator="\n"))
-    content = {"findings": findings, "verdicts": list(Verdict), "ledger": settle(findings)}
-    for name in ("README.md", "index.html", "claims.md"):
-        replace_text(REPORTS / name, render(f"{name}.j2", **content))
+    ledger = settle(findings)
+    replace_text(REPORTS / "claims.md", render("claims.md.j2", ledger=ledger))
+    write_pages(findings, ledger, REPORTS)
 
 
 def write_all() -> list[Finding]:

@@ -2,7 +2,8 @@ r"""Formulas as MathML, from the plain text in which the docstrings write them.
 
 ``"gamma (Sd - Sc) = v^2/(4 D)"`` becomes an element that browsers set and screen readers read.
 Names of Greek letters become letters; ``_`` and ``^`` set what follows low and high, a letter after
-a capital ``S`` is an index (Sc, Sd, S0), ``sqrt(...)`` is a root, braces group without showing.
+a capital is an index (Sc, Sd, S0), ``sqrt(...)`` is a root, braces group without showing, and a
+word of three letters or more is a word.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ GREEK = {
     "Gamma": "Γ",
     "pi": "π",
 }
-UPRIGHT = {"min", "max", "ln", "exp", "sin", "cos", "cot", "tan", "mean", "eff", "over", "of"}
+UPRIGHT = {"min", "max", "ln", "exp", "sin", "cos", "cot", "tan", "eff", "true", "exact", "full"}
 SIGNS = {"-": "−", "<=": "≤", ">=": "≥", "->": "→", "*": "·", "~": "∼", "+-": "±"}
 
 _TOKEN = re.compile(r"\s*(\d+(?:\.\d+)?|[^\W\d_]+\d*|<=|>=|->|\+-|\S)")
@@ -38,9 +39,8 @@ def _row(tokens: list[str], closing: str | None) -> str:
     items: list[str] = []
     while tokens and tokens[0] not in (")", "}"):
         items.append(_scripted(tokens))
-    if closing is not None:
-        if not tokens or tokens.pop(0) != closing:
-            raise ValueError(f"a {closing!r} is missing")
+    if closing is not None and (not tokens or tokens.pop(0) != closing):
+        raise ValueError(f"a {closing!r} is missing")
     return f"<mrow>{''.join(items)}</mrow>"
 
 
@@ -71,8 +71,20 @@ def _atom(tokens: list[str]) -> str:
     if token[0].isdigit():
         return f"<mn>{token}</mn>"
     if token[0].isalpha() or token == "∂":
-        return _name(token)
+        return _word(token, tokens) if _is_word(token) else _name(token)
     return f"<mo>{escape(SIGNS.get(token, token))}</mo>"
+
+
+def _is_word(token: str) -> bool:
+    known = token in GREEK or token in UPRIGHT
+    return token == "of" or (len(token) > 2 and token.isalpha() and not known)
+
+
+def _word(token: str, rest: list[str]) -> str:
+    """With a space on either side, but none before what encloses or ends it."""
+    space = "\N{NO-BREAK SPACE}"
+    after = "" if not rest or rest[0] in (":", "(", ")", ",") else space
+    return f"<mtext>{space}{token}{after}</mtext>"
 
 
 def _name(token: str) -> str:

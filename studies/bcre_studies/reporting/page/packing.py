@@ -63,6 +63,8 @@ def _rounded(value: ArrayLike, *, down: bool) -> NDArray[np.float64]:
     hair = 1e-9 * unit
     steps = np.floor((found + hair) / unit) if down else np.ceil((found - hair) / unit)
     return np.array(
-        [float(f"{step * size:.{DIGITS}g}") for step, size in zip(
-            np.atleast_1d(steps), np.atleast_1d(unit), strict=True)]
+        [
+            float(f"{step * size:.{DIGITS}g}")
+            for step, size in zip(np.atleast_1d(steps), np.atleast_1d(unit), strict=True)
+        ]
     ).reshape(found.shape)

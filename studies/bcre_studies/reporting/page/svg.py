@@ -23,6 +23,7 @@ from matplotlib.transforms import Affine2D
 
 SVG = "{http://www.w3.org/2000/svg}"
 HREF = "{http://www.w3.org/1999/xlink}href"
+LETTERS = {Path.MOVETO: "M", Path.LINETO: "L", Path.CURVE3: "Q", Path.CURVE4: "C"}
 MARGIN = 3.0
 """Points left round a panel."""
 
@@ -219,7 +220,7 @@ def _sample(handle: Any) -> str:
         return _sample_of(f'<rect x="4" y="1" width="26" height="10" style="fill:{fill}"/>')
     colour, shapes = _css(to_hex(handle.get_color())), []
     if handle.get_linestyle() != "None":
-        dashes = " ".join(f"{length:g}" for length in handle._dash_pattern[1] or ())
+        dashes = " ".join(f"{length:g}" for length in vars(handle)["_dash_pattern"][1] or ())
         style = f"fill:none;stroke:{colour};stroke-width:{handle.get_linewidth():g}"
         style += f";stroke-dasharray:{dashes}" if dashes else ""
         shapes.append(f'<path d="M 1 6 L 33 6" style="{style}"/>')
@@ -240,8 +241,8 @@ def _marker(handle: Line2D) -> str:
     path = marker.get_path().transformed(marker.get_transform() + place)
     parts: list[str] = []
     for points, code in path.iter_segments(curves=True, simplify=False):
-        letter = {Path.MOVETO: "M", Path.LINETO: "L", Path.CURVE3: "Q", Path.CURVE4: "C"}.get(code)
-        parts.append("z" if letter is None else f"{letter} " + " ".join(map("{:.2f}".format, points)))
+        numbers = " ".join(f"{value:.2f}" for value in points)
+        parts.append(f"{LETTERS[code]} {numbers}" if code in LETTERS else "z")
     face = handle.get_markerfacecolor()
     fill = "none" if str(face) == "none" or not marker.is_filled() else _css(to_hex(face))
     edge = _css(to_hex(handle.get_markeredgecolor()))

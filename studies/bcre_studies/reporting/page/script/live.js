@@ -87,7 +87,7 @@ function startLive(root) {
   }
 
   function tick(now) {
-    advance(Math.min((now - last) / 1000, 0.05));
+    advance(Math.max(0, Math.min((now - last) / 1000, 0.05)));
     last = now;
     const { S, most } = draw();
     if (most <= SPENT * started.pulse) {

@@ -1,5 +1,7 @@
 // Watch: stored frames of both models; play, scrub, speed, keyboard.
 
+const RATE = 12; // stored frames a second
+
 function startPlayer(root) {
   const find = (name) => root.querySelector(`[data-part="${name}"]`);
   const [choice, play, scrub, speed] = ["scene", "play", "scrub", "speed"].map(find);
@@ -54,7 +56,8 @@ function startPlayer(root) {
   }
 
   function tick(now) {
-    const next = from + Math.floor((now - began) / 1000 * 12 * Number(speed.value));
+    const passed = Math.max(0, now - began) / 1000; // a frame's time may lie before the click
+    const next = from + Math.floor(passed * RATE * Number(speed.value));
     if (next !== frame) {
       frame = Math.min(next, scene.t.length - 1);
       draw();

@@ -1,0 +1,183 @@
+"""Studies, claims and tables as the page's templates take them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Protocol
+
+import pandas as pd
+
+from bcre_studies.catalog import STUDIES
+from bcre_studies.comparison.claim import Claim, Verdict
+from bcre_studies.publishing.stories import story_of
+from bcre_studies.publishing.wording import number
+from bcre_studies.reporting.page.mathml import formula
+from bcre_studies.reporting.page.picture import Picture
+
+Tables = dict[str, pd.DataFrame]
+
+MARKS = {
+    "agree": "full",
+    "reproduced": "full",
+    "explained by cell size": "half",
+    "agree once the automaton's own diffusion is counted": "half",
+    "reproduced under conditions": "half",
+    "disagree": "cross",
+    "not reproduced": "cross",
+}
+"""The shape that stands with a verdict; a word without an entry gets the open one."""
+SIGNS = {"full": "●", "half": "◐", "cross": "✕", "open": "?"}
+QUALITY_STUDIES = ("scene_needs", "advice")
+QUALITY = {
+    ("scaling", "ratios"),
+    ("hard_cases", "finite"),
+    ("hard_cases", "each failing model says where"),
+    ("hard_cases", "faults"),
+}
+"""Studies and claims that are about the code and not about sand."""
+GROUPS = {
+    "validation": (
+        "What sand does",
+        "The paper’s figures and properties, in both models, from the same sand.",
+    ),
+    "verification": (
+        "Is it computed right?",
+        "Against closed forms and exact solutions, and where nothing was made to be easy.",
+    ),
+    "performance": (
+        "How fast",
+        "Work and time for a given error. Times are those of a record that names its machine.",
+    ),
+}
+DIGITS = 4
+"""Significant digits of the tables on the page; the CSV files hold all."""
+
+
+class Finding(Protocol):
+    """A study with what it measured and concluded."""
+
+    @property
+    def name(self) -> str:
+        """As in the catalogue."""
+
+    @property
+    def title(self) -> str:
+        """As in the catalogue."""
+
+    @property
+    def text(self) -> str:
+        """Its docstring."""
+
+    @property
+    def tables(self) -> Tables:
+        """What it measured."""
+
+    @property
+    def claims(self) -> list[Claim]:
+        """What it concluded."""
+
+    @property
+    def picture(self) -> Picture:
+        """Its figure."""
+
+
+def mark_of(verdict: str) -> str:
+    """The shape of a verdict: full, half, open or cross."""
+    return MARKS.get(str(verdict), "open")
+
+
+def is_quality(name: str, claim: Claim) -> bool:
+    """Whether a claim is about the code, so that it stands on the page of quality checks."""
+    return name in QUALITY_STUDIES or (name, claim.name) in QUALITY
+
+
+def groups(findings: Sequence[Finding], folder: Path) -> list[dict[str, Any]]:
+    rooms: dict[str, list[dict[str, Any]]] = {}
+    for finding in findings:
+        entry = STUDIES.get(finding.name)
+        room = entry.module.partition(".")[0] if entry else "validation"
+        rooms.setdefault(room, []).append(_study_view(finding, folder))
+    return [
+        {
+            "id": room,
+            "title": GROUPS.get(room, (room, ""))[0],
+            "lead": GROUPS.get(room, ("", ""))[1],
+            "studies": views,
+        }
+        for room, views in rooms.items()
+    ]
+
+
+def _study_view(finding: Finding, folder: Path) -> dict[str, Any]:
+    story = story_of(finding.name, finding.text)
+    claims = [claim for claim in finding.claims if not is_quality(finding.name, claim)]
+    return {
+        "name": finding.name,
+        "title": finding.title,
+        "question": story.question,
+        "equations": [formula(text) for text in story.equations],
+        "alt": story.picture,
+        "picture": finding.picture,
+        "sentences": list(story.tell(finding.tables)),
+        "claims": claims,
+        "tally": _tally(finding.claims),
+        "table": table_view(f"Numbers of {finding.name}", finding.tables["comparison"]),
+        "files": sorted(
+            path.relative_to(folder).as_posix() for path in (folder / finding.name).glob("*.csv")
+        ),
+    }
+
+
+def _tally(claims: Sequence[Claim]) -> str:
+    counts = {verdict: sum(claim.verdict == verdict for claim in claims) for verdict in Verdict}
+    return " ".join(
+        f"{count} {SIGNS[mark_of(verdict)]}" for verdict, count in counts.items() if count
+    )
+
+
+def table_view(caption: str, table: pd.DataFrame) -> dict[str, Any]:
+    """A table as texts: short numbers, empty where there is none, heads without underscores."""
+    return {
+        "caption": caption,
+        "columns": [str(name).replace("_", " ") for name in table.columns],
+        "rows": [[_cell(value) for value in row] for row in table.itertuples(index=False)],
+    }
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, float):
+        return "" if math.isnan(value) else number(value, DIGITS)
+    return "" if value is None or value is pd.NA else str(value)
+
+
+def quality_tables(tables: Mapping[str, Tables], folder: Path) -> list[dict[str, Any]]:
+    views = []
+    if "scaling" in tables:
+        views.append(
+            {
+                "id": "goals",
+                "title": "Speed goals",
+                "lead": "Ratios of times from interleaved rounds, each beside its goal; the record "
+                "names its machine.",
+                "table": table_view("Speed goals", tables["scaling"]["comparison"]),
+                "file": "scaling/comparison.csv",
+            }
+        )
+    faults = next((path for path in FAULTS if (folder / path).is_file()), None)
+    if faults is not None:
+        views.append(
+            {
+                "id": "faults",
+                "title": "Faults made on purpose",
+                "lead": "Broken scene files, killed runs, full disks and the like: what was done, "
+                "what came of it, and what should.",
+                "table": table_view("Faults", pd.read_csv(folder / faults, keep_default_na=False)),
+                "file": faults,
+            }
+        )
+    return views
+
+
+FAULTS = ("quality/faults.csv", "hard_cases/faults.csv")
