@@ -63,8 +63,8 @@ def picture_views(tables: Mapping[str, Tables]) -> list[dict[str, Any]]:
             "Amplitude of a pulse against slope, with the slope from which on the pulse climbs to "
             "the top: lowest in the automaton with d = 1, higher with d = 1/4, highest in BCRE.",
             "A pulse at the foot of a slope, figure 1’s material. Above a line it climbs to the "
-            "top and the whole slope comes down to repose. To the left, where pulses vanish, the lines "
-            "end at Sd. The star is the paper’s figure 1 with our slope, one of "
+            "top and the whole slope comes down to repose. To the left, where pulses vanish, the "
+            "lines end at Sd. The star is the paper’s figure 1 with our slope, one of "
             f"{angle:.0f} degrees: sand is not so steep, but the paper’s γ and v ask for it.",
         ),
         _view(

@@ -62,7 +62,8 @@ def _paper_figures(tables: Tables) -> list[str]:
     if unjudged:
         names = listed([figure_name(name) for name in unjudged]).capitalize()
         sentences.append(
-            f"{names} stays unresolved: with κ = 0 its scarp gets steeper on every finer grid, so that BCRE has no solution to compare with."
+            f"{names} stays unresolved: with κ = 0 its scarp gets steeper on every finer grid, so "
+            "that BCRE has no solution to compare with."
         )
     return sentences
 
