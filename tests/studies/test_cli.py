@@ -20,7 +20,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bcre_studies import catalog, cli
-from bcre_studies.models.simulate import rule_of
+from bcre_studies.models.automaton import rule_of
 from bcre_studies.running import run as run_module
 from bcre_studies.scenes.listing import built_in_names
 from bcre_studies.scenes.scene import SECTIONS, load

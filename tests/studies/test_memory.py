@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from bcre_studies.running import run as run_module
+from bcre_studies.models.registry import MODELS, Model
 from bcre_studies.running.run import require_runnable, run_scene
 from bcre_studies.scenes import tables
 from bcre_studies.scenes.scene import SceneError, load
@@ -47,8 +47,7 @@ def test_estimate_is_within_a_factor_of_two_of_the_measured_peak(tmp_path, model
     command = [sys.executable, "-c", MEASURE, model, str(frames), *changes]
     for _ in ("the compiler takes more memory than the run: once so that all is compiled", "so"):
         ended = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
-    scene = load("figure2", changes)
-    needed = memory.estimate(scene, model, frames, run_module._finest(scene))
+    needed = MODELS[model].adapter().memory(load("figure2", changes), frames)
     measured = int(ended.stdout)
     assert measured > 3e7
     assert 0.5 < needed / measured < 2
@@ -103,7 +102,7 @@ def test_memory_that_runs_out_after_all_is_told_by_key(monkeypatch):
     def fail(*_):
         raise MemoryError
 
-    monkeypatch.setattr(run_module, "run_automaton", fail)
+    monkeypatch.setattr(Model, "answer", fail)
     with pytest.raises(SceneError, match=r"domain\.cells = 100"):
         run_scene(load("figure2"), "ca", 2)
 

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from bcre_studies.comparison.claim import Verdict
-from bcre_studies.comparison.compare import compare, sample
+from bcre_studies.comparison.compare import compare
 from bcre_studies.scenes.scene import load
 from bcre_studies.verification import modified_equation as study
 
@@ -26,7 +26,7 @@ def test_effective_diffusion_explains_more_than_95_percent_of_figure_2():
 def test_it_does_so_on_parameters_that_stand_in_no_scene(v, D, gamma, courant):
     scene = load("figure2").with_changes(v=v, D=D, gamma=gamma, until=15.0, step=courant / v)
     x = scene.centres()
-    found = compare(scene, [15.0], lambda run: sample(run, x), 0.05, coarsest=100, finest=400)
+    found = compare(scene, [15.0], lambda run: run.sample(x), 0.05, coarsest=100, finest=400)
     assert found.pde.resolved
     assert found.effective.resolved
     assert found.difference > 0.1

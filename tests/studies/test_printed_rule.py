@@ -9,7 +9,7 @@ import pytest
 
 import bcre_ca
 from bcre_studies.comparison.claim import Verdict
-from bcre_studies.models.simulate import rule_of
+from bcre_studies.models.automaton import rule_of
 from bcre_studies.observables.outcome import slope
 from bcre_studies.scenes.scene import load
 from bcre_studies.validation import printed_rule as study

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import bcre_pde
-from bcre_studies.models.simulate import problem_of, rule_of
+from bcre_studies.models.automaton import rule_of
+from bcre_studies.models.bcre import problem_of
 from bcre_studies.robustness import fuzz
 from bcre_studies.running.run import require_runnable, run_scene
 from bcre_studies.scenes.scene import SceneError, load

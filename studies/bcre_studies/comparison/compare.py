@@ -13,22 +13,14 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import make_interp_spline
 
 import bcre_pde
 from bcre_studies.comparison.claim import Verdict, verdict_of
-from bcre_studies.models.simulate import (
-    Run,
-    as_run,
-    effective_problem_of,
-    problem_of,
-    run_automaton,
-)
-from bcre_studies.scenes.domain import Array
+from bcre_studies.models.bcre import SHARE, problem_of, run_of
+from bcre_studies.models.effective import effective
+from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE
+from bcre_studies.models.run import Run
 from bcre_studies.scenes.scene import Scene
-
-SHARE = 0.1
-"""The PDE's error may be this part of the difference that is reported."""
 
 Measure = Callable[[Run], ArrayLike]
 
@@ -71,11 +63,10 @@ class Comparison:
         """The comparison as the columns that all tables share, rounded as its errors justify."""
         row: dict[str, Any] = {}
         if np.ndim(self.automaton) == 0:
-            row["automaton"] = significant(float(self.automaton), 5)
-            row["pde"] = to_error(float(self.pde.measured), self.pde.error)
-            row["pde_error"] = significant(self.pde.error, 1)
-            row["pde_effective"] = to_error(float(self.effective.measured), self.effective.error)
-            row["pde_effective_error"] = significant(self.effective.error, 1)
+            row[AUTOMATON.column] = significant(float(self.automaton), 5)
+            for model, found in ((BCRE, self.pde), (EFFECTIVE, self.effective)):
+                row[model.column] = to_error(float(found.measured), found.error)
+                row[f"{model.column}_error"] = significant(found.error, 1)
         row["difference"] = significant(self.difference, 3)
         row["difference_error"] = significant(relative_error(self.pde), 1)
         row["difference_effective"] = significant(self.difference_effective, 3)
@@ -102,50 +93,35 @@ def compare(
     tolerance: largest relative difference that counts as agreement.
     refinement: options of :func:`bcre_pde.solve_refined`.
     """
-    automaton = measure(run_automaton(scene, times))
-    return Comparison(
-        automaton=automaton,
-        pde=refine(scene, problem_of(scene), times, measure, automaton, tolerance, **refinement),
-        effective=refine(
-            scene, effective_problem_of(scene), times, measure, automaton, tolerance, **refinement
-        ),
-        tolerance=tolerance,
+    automaton = measure(AUTOMATON.run(scene, times))
+    pde, own = (
+        refine(changed, times, measure, automaton, tolerance, **refinement)
+        for changed in (scene, effective(scene))
     )
+    return Comparison(automaton, pde, own, tolerance)
 
 
 def refine(
     scene: Scene,
-    problem: bcre_pde.Problem,
     times: Sequence[float],
     measure: Measure,
     automaton: ArrayLike,
     tolerance: float,
     **refinement: Any,
 ) -> bcre_pde.Refined:
-    """Solve until the error is :data:`SHARE` of the difference from the automaton's value."""
+    """Solve BCRE until the error is :data:`SHARE` of the difference from the automaton's value."""
 
     def allowed(value: Any) -> float:
         difference = float(np.mean(np.abs(np.asarray(value) - np.asarray(automaton))))
         return SHARE * max(difference, tolerance * float(np.mean(np.abs(value))))
 
     return bcre_pde.solve_refined(
-        problem, times, lambda solution: measure(as_run(scene, solution)), allowed, **refinement
+        problem_of(scene),
+        times,
+        lambda solution: measure(run_of(scene, solution)),
+        allowed,
+        **refinement,
     )
-
-
-def sample(run: Run, x: Array, field: str = "R", frame: int = -1) -> Array:
-    """``run.R`` or ``run.u`` of one frame at positions x, by a quintic spline between cells."""
-    values = getattr(run, field)[frame]
-    if values.size == x.size and np.allclose(run.x, x, rtol=0, atol=1e-9 * run.d):
-        return np.asarray(values)
-    positions = run.x
-    if run.scene.domain.ends == "periodic":
-        length, wrap = run.scene.domain.length, 4
-        positions = np.concatenate(
-            [positions[-wrap:] - length, positions, positions[:wrap] + length]
-        )
-        values = np.concatenate([values[-wrap:], values, values[:wrap]])
-    return np.asarray(make_interp_spline(positions, values, k=5)(x))
 
 
 def relative_difference(automaton: ArrayLike, pde: ArrayLike) -> float:

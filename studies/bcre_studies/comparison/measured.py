@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from bcre_studies.comparison.claim import verdict_of
-from bcre_studies.comparison.compare import SHARE, significant, to_error
+from bcre_studies.comparison.compare import significant, to_error
+from bcre_studies.models.bcre import SHARE
+from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE
 
 DIGITS = 5
 
@@ -48,11 +50,11 @@ def numbers(
     finest = 0.0 if scale is None else 10.0 ** (math.floor(math.log10(scale)) + 1 - DIGITS)
     errors = [max(model.error, finest) for model in (pde, effective)]
     return {
-        "automaton": shown(automaton, finest),
-        "pde": shown(to_error(pde.value, errors[0]), finest),
-        "pde_error": significant(errors[0], 1),
-        "pde_effective": shown(to_error(effective.value, errors[1]), finest),
-        "pde_effective_error": significant(errors[1], 1),
+        AUTOMATON.column: shown(automaton, finest),
+        BCRE.column: shown(to_error(pde.value, errors[0]), finest),
+        f"{BCRE.column}_error": significant(errors[0], 1),
+        EFFECTIVE.column: shown(to_error(effective.value, errors[1]), finest),
+        f"{EFFECTIVE.column}_error": significant(errors[1], 1),
         "difference": significant(round(gaps[0], DIGITS), 3),
         "difference_effective": significant(round(gaps[1], DIGITS), 3),
         "verdict": str(verdict_of(gaps[0], resolved[0], gaps[1], resolved[1], tolerance)),

@@ -13,14 +13,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import bcre_pde
-from bcre_studies.comparison.compare import SHARE, Comparison, significant, to_error
-from bcre_studies.models.simulate import (
-    Run,
-    as_run,
-    effective_problem_of,
-    problem_of,
-    run_automaton,
-)
+from bcre_studies.comparison.compare import Comparison, significant, to_error
+from bcre_studies.models.bcre import SHARE, problem_of, run_of
+from bcre_studies.models.effective import effective
+from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE
+from bcre_studies.models.run import Run
 from bcre_studies.scenes.scene import Scene
 
 
@@ -50,13 +47,13 @@ class ScaledComparison(Comparison):
 
         errors = [max(refined.error, finest) for refined in (self.pde, self.effective)]
         return {
-            "automaton": shown(self.automaton),
-            "automaton_theory": shown(automaton_theory),
-            "pde": shown(self.pde.measured, self.pde.error),
-            "pde_error": significant(errors[0], 1),
-            "pde_theory": shown(pde_theory),
-            "pde_effective": shown(self.effective.measured, self.effective.error),
-            "pde_effective_error": significant(errors[1], 1),
+            AUTOMATON.column: shown(self.automaton),
+            f"{AUTOMATON.column}_theory": shown(automaton_theory),
+            BCRE.column: shown(self.pde.measured, self.pde.error),
+            f"{BCRE.column}_error": significant(errors[0], 1),
+            f"{BCRE.column}_theory": shown(pde_theory),
+            EFFECTIVE.column: shown(self.effective.measured, self.effective.error),
+            f"{EFFECTIVE.column}_error": significant(errors[1], 1),
             "difference": significant(round(self.difference, 5), 3),
             "difference_error": significant(errors[0] / self.scale, 1),
             "difference_effective": significant(round(self.difference_effective, 5), 3),
@@ -72,7 +69,6 @@ def compare_each(
     measure: Callable[[Run], ArrayLike],
     scale: ArrayLike,
     tolerance: float,
-    effective: bcre_pde.Problem | None = None,
     coarsest: int = 100,
     finest: int = 800,
 ) -> list[ScaledComparison]:
@@ -84,18 +80,17 @@ def compare_each(
     measure: K numbers of a run, shape (K,).
     scale: what their differences are relative to, shape (K,), > 0.
     tolerance: largest relative difference that counts as agreement.
-    effective: BCRE with the automaton's coefficients, where they are not those of
-        :func:`bcre_studies.models.simulate.effective_problem_of`.
     coarsest, finest: the grid is doubled until every number is resolved, or the finest was solved.
     """
-    automaton = np.asarray(measure(run_automaton(scene, times)))
+    automaton = np.asarray(measure(AUTOMATON.run(scene, times)))
     scales = np.broadcast_to(np.asarray(scale, dtype=float), automaton.shape)
 
-    def refined(problem: bcre_pde.Problem) -> list[bcre_pde.Refined]:
+    def refined(changed: Scene) -> list[bcre_pde.Refined]:
         cells, values, result = [coarsest], [], []
+        problem = problem_of(changed)
         while True:
             solution = bcre_pde.solve(problem, times, cells[-1])
-            values.append(np.asarray(measure(as_run(scene, solution))))
+            values.append(np.asarray(measure(run_of(scene, solution))))
             if len(values) >= 3:
                 allowed = SHARE * np.maximum(abs(automaton - values[-1]), tolerance * scales)
                 indices = [
@@ -110,8 +105,7 @@ def compare_each(
                     return result
             cells.append(2 * cells[-1])
 
-    pde = refined(problem_of(scene))
-    own = refined(effective_problem_of(scene) if effective is None else effective)
+    pde, own = refined(scene), refined(effective(scene))
     return [
         ScaledComparison(value, nominal, with_own, tolerance, float(size))
         for value, nominal, with_own, size in zip(automaton, pde, own, scales, strict=True)

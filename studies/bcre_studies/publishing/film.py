@@ -11,14 +11,10 @@ from typing import Any
 
 import numpy as np
 
-import bcre_pde
-from bcre_studies.comparison.compare import SHARE, significant
-from bcre_studies.models.simulate import (
-    effective_problem_of,
-    frame_times,
-    problem_of,
-    run_automaton,
-)
+from bcre_studies.comparison.compare import significant
+from bcre_studies.models.bcre import SHARE
+from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE, Model
+from bcre_studies.models.run import frame_times
 from bcre_studies.reporting.page.packing import pack
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.listing import built_in_names
@@ -49,23 +45,23 @@ def film(name: str) -> dict[str, Any]:
     """
     scene = load(name)
     times = frame_times(scene, FRAMES)
-    automaton = run_automaton(scene, times)
+    automaton = AUTOMATON.run(scene, times)
     cells = automaton.x.size
     shown = cells if cells <= WIDEST else next(n for n in range(WIDEST, 0, -1) if cells % n == 0)
 
-    def solved(problem: bcre_pde.Problem, finer: int) -> tuple[Array, Array]:
-        solution = bcre_pde.solve(problem, times, finer * cells)
-        return _averaged(solution.h, shown), _averaged(solution.R, shown)
+    def solved(model: Model, finer: int) -> tuple[Array, Array]:
+        run = model.run(scene, times, finer * cells)
+        return _averaged(run.h, shown), _averaged(run.R, shown)
 
     layers = {
-        "ca": (_averaged(automaton.h, shown), _averaged(automaton.R, shown)),
-        "pde": solved(problem_of(scene), FINER),
-        "pde effective": solved(effective_problem_of(scene), FINER),
+        AUTOMATON.name: (_averaged(automaton.h, shown), _averaged(automaton.R, shown)),
+        BCRE.name: solved(BCRE, FINER),
+        EFFECTIVE.name: solved(EFFECTIVE, FINER),
     }
-    coarser = solved(problem_of(scene), FINER // 2)[1]
+    coarser = solved(BCRE, FINER // 2)[1]
     R = {model: both[1] for model, both in layers.items()}
-    difference = _differences(R["ca"], R["pde"])
-    error = _differences(coarser, R["pde"])
+    difference = _differences(R[AUTOMATON.name], R[BCRE.name])
+    error = _differences(coarser, R[BCRE.name])
     x = (np.arange(shown) + 0.5) * scene.domain.length / shown
     floor = min(float((h + scene.material.Sc * x).min()) for h, _ in layers.values())
     return {
@@ -79,7 +75,7 @@ def film(name: str) -> dict[str, Any]:
             for model, (h, layer) in layers.items()
         },
         "difference": difference,
-        "left": _differences(R["ca"], R["pde effective"]),
+        "left": _differences(R[AUTOMATON.name], R[EFFECTIVE.name]),
         "error": error,
         "unresolved": [
             own is not None and gap is not None and own > SHARE * max(gap, SHARE)

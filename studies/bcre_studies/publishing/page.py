@@ -13,17 +13,17 @@ from typing import Any, Protocol
 
 import bcre_ca
 from bcre_studies.comparison.claim import Claim
-from bcre_studies.paper_claims import Entry
+from bcre_studies.paper_claims import PaperClaim
 from bcre_studies.publishing.deciding import deciding_number
 from bcre_studies.publishing.film import FRAMES, films
+from bcre_studies.publishing.finding import Finding
 from bcre_studies.publishing.headline import answers, certainty, headline, short_answer
 from bcre_studies.publishing.live_scenes import PRESETS, SLIDERS
 from bcre_studies.publishing.picture_views import picture_views
 from bcre_studies.publishing.provenance import provenance
+from bcre_studies.publishing.store import Tables
 from bcre_studies.publishing.study_views import (
     SIGNS,
-    Finding,
-    Tables,
     groups,
     is_quality,
     mark_of,
@@ -74,25 +74,25 @@ EQUATIONS = {
 }
 
 
-class Settled(Protocol):
-    """A claim of the paper with its verdict and the claims of ours that bear on it."""
+class Decided(Protocol):
+    """A claim of the paper with its verdict, and our claims that decide it with their studies."""
 
     @property
-    def entry(self) -> Entry:
-        """The claim."""
+    def claim(self) -> PaperClaim:
+        """What the paper claims."""
 
     @property
     def verdict(self) -> str:
         """What became of it."""
 
     @property
-    def claims(self) -> list[tuple[str, Claim]]:
+    def evidence(self) -> list[tuple[str, Claim]]:
         """Study and claim, those that decide first."""
 
 
-def write_pages(findings: Sequence[Finding], ledger: Sequence[Settled], folder: Path) -> None:
+def write_pages(findings: Sequence[Finding], decided: Sequence[Decided], folder: Path) -> None:
     """Write the pages and pictures into ``folder``, that of the reports."""
-    content = page_content(findings, ledger, folder)
+    content = page_content(findings, decided, folder)
     for view in (content["hero"], *content["pictures"]):
         replace_text(folder / "pictures" / f"{view['name']}.svg", view["picture"].text)
     for name in ("index.html", "quality.html", "README.md"):
@@ -100,7 +100,7 @@ def write_pages(findings: Sequence[Finding], ledger: Sequence[Settled], folder: 
 
 
 def page_content(
-    findings: Sequence[Finding], ledger: Sequence[Settled], folder: Path
+    findings: Sequence[Finding], decided: Sequence[Decided], folder: Path
 ) -> dict[str, Any]:
     """All that the templates show."""
     tables = {finding.name: finding.tables for finding in findings}
@@ -124,8 +124,8 @@ def page_content(
         "pictures": drawn[1:],
         "equations": {name: formula(text) for name, text in EQUATIONS.items()},
         "symbols": [(formula(symbol), meaning) for symbol, meaning in SYMBOLS],
-        "ledger": [_ledger_row(item, tables) for item in ledger],
-        "has_untestable": any(mark_of(item.verdict) == "open" for item in ledger),
+        "ledger": [_ledger_row(item, tables) for item in decided],
+        "has_untestable": any(mark_of(item.verdict) == "open" for item in decided),
         "films": films(),
         "film_frames": FRAMES,
         "margin_percent": f"{100 * bcre_ca.MARGIN:g}",
@@ -159,13 +159,13 @@ def _of_page(name: str, content: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def _ledger_row(item: Settled, tables: Mapping[str, Tables]) -> dict[str, Any]:
+def _ledger_row(item: Decided, tables: Mapping[str, Tables]) -> dict[str, Any]:
     return {
-        "text": item.entry.text,
+        "text": item.claim.text,
         "verdict": item.verdict,
-        "remark": item.entry.remark,
-        "number": deciding_number(item.claims, tables),
-        "studies": list(dict.fromkeys(name for name, _ in item.claims)),
+        "remark": item.claim.remark,
+        "number": deciding_number(item.evidence, tables),
+        "studies": list(dict.fromkeys(name for name, _ in item.evidence)),
     }
 
 

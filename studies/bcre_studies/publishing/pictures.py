@@ -19,9 +19,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullLocator
 
-import bcre_pde
-from bcre_studies.comparison.compare import SHARE, significant
-from bcre_studies.models.simulate import frame_times, problem_of, run_automaton
+from bcre_studies.comparison.compare import significant
+from bcre_studies.models.bcre import SHARE
+from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED
+from bcre_studies.models.registry import EFFECTIVE as COUNTED
+from bcre_studies.models.run import frame_times
 from bcre_studies.publishing.wording import figure_name
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
@@ -30,7 +32,7 @@ from bcre_studies.sweeps.each import each
 
 Tables = dict[str, pd.DataFrame]
 
-CA, PDE, EFFECTIVE = (style.MODELS[name]["color"] for name in ("ca", "pde", "pde effective"))
+CA, PDE, EFFECTIVE = (model.color for model in COMPARED)
 RAMP = ("#fdf0d9", "#f9d9a6", "#f2b872", "#e58f45", "#cc672a", "#a5441c", "#752a17", "#451713")
 """From little to much; the style sheet turns it round in the dark scheme."""
 LESS = ("#1f5a98", "#7ba7d1")
@@ -42,29 +44,29 @@ def answer(profiles: pd.DataFrame, figure_name: str = "figure2") -> Figure:
     figure, (axis,) = _panels(1, 1, width=4.7, height=3.2)
     frames = profiles[profiles["figure"] == figure_name]
     last = frames["t"].max()
-    start = frames[(frames["t"] == 0) & (frames["model"] == "pde")]
+    start = frames[(frames["t"] == 0) & (frames["model"] == BCRE.name)]
     axis.plot(start["x"], start["R"], **style.START)
     axis.fill_between(start["x"], start["R"], color="0.55", alpha=0.1, linewidth=0)
     tops = {}
-    for model in style.MODELS:
-        line = frames[(frames["t"] == last) & (frames["model"] == model)]
-        look = style.MODELS[model] | {"linewidth": 2.4 if model == "pde effective" else 2.0}
+    for model in COMPARED:
+        line = frames[(frames["t"] == last) & (frames["model"] == model.name)]
+        look = model.line | {"linewidth": 2.4 if model is COUNTED else 2.0}
         axis.plot(line["x"], line["R"], **look)
-        tops[model] = line.loc[line["R"].idxmax()]
+        tops[model.name] = line.loc[line["R"].idxmax()]
     label: dict[str, Any] = {"textcoords": "offset points", "fontsize": 9.5}
     first = start.loc[start["R"].idxmax()]
     axis.annotate("the pulse at t = 0", (first["x"], first["R"]), (9, -3), color="0.5", **label)
     axis.annotate(
         "BCRE",
-        (tops["pde"]["x"], tops["pde"]["R"]),
+        (tops[BCRE.name]["x"], tops[BCRE.name]["R"]),
         (0, 6),
         ha="center",
         color=PDE,
         weight="bold",
         **label,
     )
-    half = frames[(frames["t"] == last) & (frames["model"] == "ca")]
-    right = half[half["R"] >= tops["ca"]["R"] / 2].iloc[-1]
+    half = frames[(frames["t"] == last) & (frames["model"] == AUTOMATON.name)]
+    right = half[half["R"] >= tops[AUTOMATON.name]["R"] / 2].iloc[-1]
     axis.annotate("automaton", (right["x"], right["R"]), (8, 6), color=CA, weight="bold", **label)
     axis.annotate(
         "BCRE with the cells’\nown diffusion: on top of it",
@@ -110,7 +112,7 @@ def measure_space_time() -> SpaceTime:
     """Figure 1 on the paper's cells, with the step at which the studies compare it."""
     scene = load("figure1").with_changes(until=UNTIL, step=0.4)
     times = frame_times(scene, ROWS)
-    run = run_automaton(scene, times)
+    run = AUTOMATON.run(scene, times)
     fine, coarse = each(_figure1_of_bcre, [GRID, GRID // 2], "figure 1, space-time")
     size = fine.mean(axis=1)
     return SpaceTime(
@@ -125,7 +127,7 @@ def measure_space_time() -> SpaceTime:
 
 def _figure1_of_bcre(grid: int) -> Array:
     scene = load("figure1").with_changes(until=UNTIL, step=0.4)
-    solution = bcre_pde.solve(problem_of(scene), frame_times(scene, ROWS), grid)
+    solution = BCRE.run(scene, frame_times(scene, ROWS), grid)
     cells = scene.domain.cells
     return np.asarray(solution.R.reshape(ROWS, cells, -1).mean(axis=2))
 
@@ -200,8 +202,7 @@ def phase_diagram(comparison: pd.DataFrame, paper: tuple[float, float]) -> Figur
     axis.fill_between(pulse, own, finer, color=CA, alpha=0.30, linewidth=0)
     axis.fill_between(pulse, finer, bcre, color=CA, alpha=0.13, linewidth=0)
     axis.fill_between(pulse, bcre, TOP, color=PDE, alpha=0.10, linewidth=0)
-    ca, pde = (style.MODELS[name] for name in ("ca", "pde"))
-    axis.plot(pulse, own, **ca, marker="o", label="automaton, d = 1")
+    axis.plot(pulse, own, **AUTOMATON.line, marker="o", label="automaton, d = 1")
     axis.plot(
         pulse,
         finer,
@@ -211,7 +212,7 @@ def phase_diagram(comparison: pd.DataFrame, paper: tuple[float, float]) -> Figur
         markerfacecolor="white",
         label="automaton, d = 1/4",
     )
-    axis.plot(pulse, bcre, **pde, marker="s", label="BCRE")
+    axis.plot(pulse, bcre, **BCRE.line, marker="s", label="BCRE")
     middle = math.sqrt(pulse[0] * pulse[-1])
     top = float(np.interp(math.log(middle), np.log(pulse), bcre))
     low = float(np.interp(math.log(middle), np.log(pulse), own))
@@ -282,7 +283,7 @@ def shares(comparison: pd.DataFrame) -> Figure:
     axis.xaxis.set_major_formatter(FuncFormatter(_percentage))
     axis.set_xlabel("difference of the rolling layer R")
     handles = [
-        axis.plot([], [], **style.marker("pde", markersize=6), label="from BCRE")[0],
+        axis.plot([], [], **BCRE.markers(markersize=6), label="from BCRE")[0],
         axis.plot(
             [],
             [],
@@ -292,9 +293,7 @@ def shares(comparison: pd.DataFrame) -> Figure:
             markersize=7,
             label="what is left once the cells are counted",
         )[0],
-        axis.plot(
-            [], [], **style.marker("pde", hollow=True, markersize=6), label="BCRE unresolved"
-        )[0],
+        axis.plot([], [], **BCRE.markers(hollow=True, markersize=6), label="BCRE unresolved")[0],
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=2)
     return figure
@@ -308,7 +307,7 @@ def _share_row(axis: Axes, y: float, row: Any) -> None:
         "alpha": 0.45,
     }
     axis.plot([row.both, row.nominal], [y, y], **look)
-    axis.plot(row.nominal, y, **style.marker("pde", hollow=not resolved, markersize=6))
+    axis.plot(row.nominal, y, **BCRE.markers(hollow=not resolved, markersize=6))
     axis.plot(row.both, y, marker="^", color=EFFECTIVE, linestyle="", markersize=7)
     text = f"{100 * row.explained:.0f} % explained" if resolved else "unresolved"
     axis.annotate(

@@ -165,7 +165,8 @@ def _critical(tables: Tables) -> list[str]:
         "finite pulses show from which slope on the avalanche climbs to the top.",
         f"At figure 1’s parameters Sd − Sc is {fixed(own)} in the automaton and {fixed(bcre)} in "
         f"BCRE; over all parameters it is {span_of(sd['difference'])} lower in the automaton.",
-        f"With a pulse of {number(float(large['pulse']))} the slope comes down from {fixed(float(large['automaton']))} on in the automaton and from "
+        f"With a pulse of {number(float(large['pulse']))} the slope comes down from "
+        f"{fixed(float(large['automaton']))} on in the automaton and from "
         f"{fixed(float(large['pde']))} on in BCRE, against {fixed(float(small['automaton']))} and "
         f"{fixed(float(small['pde']))} for a vanishing one.",
     ]

@@ -5,18 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import pandas as pd
 
 from bcre_studies.catalog import STUDIES
 from bcre_studies.comparison.claim import Claim, Verdict
+from bcre_studies.publishing.finding import Finding
+from bcre_studies.publishing.store import Tables
 from bcre_studies.publishing.stories import story_of
 from bcre_studies.publishing.wording import number
 from bcre_studies.reporting.page.mathml import formula
-from bcre_studies.reporting.page.picture import Picture
-
-Tables = dict[str, pd.DataFrame]
 
 MARKS = {
     "agree": "full",
@@ -53,34 +52,6 @@ GROUPS = {
 }
 DIGITS = 4
 """Significant digits of the tables on the page; the CSV files hold all."""
-
-
-class Finding(Protocol):
-    """A study with what it measured and concluded."""
-
-    @property
-    def name(self) -> str:
-        """As in the catalogue."""
-
-    @property
-    def title(self) -> str:
-        """As in the catalogue."""
-
-    @property
-    def text(self) -> str:
-        """Its docstring."""
-
-    @property
-    def tables(self) -> Tables:
-        """What it measured."""
-
-    @property
-    def claims(self) -> list[Claim]:
-        """What it concluded."""
-
-    @property
-    def picture(self) -> Picture:
-        """Its figure."""
 
 
 def mark_of(verdict: str) -> str:

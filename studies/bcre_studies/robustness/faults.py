@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from bcre_studies.models.simulate import rule_of
+from bcre_studies.models.automaton import rule_of
 from bcre_studies.robustness import fuzz
 from bcre_studies.robustness.kills import Copy, Series, kill_in_turn
 from bcre_studies.running.run import require_runnable, run_scene

@@ -30,7 +30,7 @@ import bcre_ca
 from bcre_ca.rule import Order, Sign
 from bcre_studies.comparison.claim import Claim, Verdict
 from bcre_studies.comparison.compare import significant
-from bcre_studies.models.simulate import rule_of
+from bcre_studies.models.automaton import rule_of
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, load

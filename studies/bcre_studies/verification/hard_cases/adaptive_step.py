@@ -15,7 +15,7 @@ import bcre_ca
 from bcre_ca import kernels
 from bcre_studies.comparison.claim import Claim, Verdict
 from bcre_studies.comparison.compare import relative_difference, significant
-from bcre_studies.models.simulate import rule_of
+from bcre_studies.models.automaton import rule_of
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, load
 from bcre_studies.sweeps.each import each

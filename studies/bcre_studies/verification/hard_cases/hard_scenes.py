@@ -11,7 +11,7 @@ import numpy as np
 import bcre_pde
 from bcre_pde import exact
 from bcre_pde.solve import Ends
-from bcre_studies.models.simulate import problem_of
+from bcre_studies.models.bcre import problem_of
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, load
 

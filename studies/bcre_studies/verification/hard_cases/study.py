@@ -27,7 +27,7 @@ The tables ``scarp``, ``adaptive_step`` and ``faults`` are those of the modules 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, cast, get_args
 
 import numpy as np
 import pandas as pd
@@ -37,6 +37,7 @@ import bcre_pde
 from bcre_ca.rule import Scheme
 from bcre_studies.comparison.claim import Claim, Verdict
 from bcre_studies.comparison.compare import significant
+from bcre_studies.models.registry import AUTOMATON, BCRE, Look
 from bcre_studies.reporting import style
 from bcre_studies.robustness import faults
 from bcre_studies.scenes.domain import Array
@@ -48,7 +49,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-SCHEMES: tuple[Scheme, ...] = ("upwind", "calibrated", "limited")
+SCHEMES: tuple[Scheme, ...] = get_args(Scheme)
 MASS = 1e-12
 SURVIVES, REFUSED, FAILS = "survives", "refused before the start", "fails"
 FRAMES = 5
@@ -80,8 +81,8 @@ def run() -> dict[str, pd.DataFrame]:
 
 
 def _cases(scene: HardScene) -> list[Case]:
-    automaton = [Case(scene.name, "ca", s, step) for s in SCHEMES for step in scene.steps]
-    return automaton if scene.name == long_run().name else [*automaton, Case(scene.name, "pde")]
+    automaton = [Case(scene.name, AUTOMATON.name, s, step) for s in SCHEMES for step in scene.steps]
+    return automaton if scene.name == long_run().name else [*automaton, Case(scene.name, BCRE.name)]
 
 
 class Outcome(NamedTuple):
@@ -99,11 +100,11 @@ def _try(case: Case) -> Row:
     scene = long_run() if case.scene == long_run().name else scenes()[case.scene]
     row = {"scene": case.scene, "model": case.model}
     row |= {"scheme": "", "step": ""}
-    if case.model == "ca":
+    if case.model == AUTOMATON.name:
         row |= {"scheme": case.scheme, "step": str(case.step)}
     try:
         with np.errstate(all="ignore"):
-            end = _automaton(scene, case) if case.model == "ca" else _pde(scene)
+            end = _automaton(scene, case) if case.model == AUTOMATON.name else _pde(scene)
     except (bcre_pde.SolveError, FloatingPointError, ValueError) as failure:
         return row | _refusal(failure)
     verdict = SURVIVES
@@ -253,7 +254,7 @@ def _not_negative(table: pd.DataFrame) -> Claim:
     share = -negative["smallest_R"].astype(float) / negative["largest_R"].astype(float)
     most = f", at most {share.max():.1%} of the largest R" if len(negative) else ""
     scene = f" ({negative.loc[share.idxmax(), 'scene']})" if len(negative) else ""
-    automaton = int((negative["model"] == "ca").sum())
+    automaton = int((negative["model"] == AUTOMATON.name).sum())
     return Claim(
         name="R >= 0",
         statement="R stays >= 0 in both models.",
@@ -295,15 +296,11 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
 
 
 COLUMNS = {
-    ("ca", "upwind", "auto"): "upwind",
-    ("ca", "calibrated", "auto"): "calibrated",
-    ("ca", "limited", "auto"): "limited",
-    ("ca", "upwind", "fixed"): "upwind, fixed",
-    ("ca", "calibrated", "fixed"): "calibrated, fixed",
-    ("ca", "limited", "fixed"): "limited, fixed",
-    ("pde", "", ""): "BCRE",
-}
-MARKS: dict[str, style.Look] = {
+    (AUTOMATON.name, scheme, step): scheme if step == "auto" else f"{scheme}, fixed"
+    for step in ("auto", "fixed")
+    for scheme in SCHEMES
+} | {(BCRE.name, "", ""): BCRE.label}
+MARKS: dict[str, Look] = {
     "survives": {"marker": "o", "color": "#3b8f5a"},
     "survives, step lowered": {"marker": "v", "color": "#c9962b"},
     REFUSED: {"marker": "s", "color": "#1f5a99", "markerfacecolor": "none"},

@@ -41,6 +41,7 @@ from bcre_pde.explicit import ExplicitMethod
 from bcre_pde.solve import Method
 from bcre_studies.comparison.claim import Claim, Verdict
 from bcre_studies.comparison.compare import significant
+from bcre_studies.models.registry import AUTOMATON, BCRE, MODELS, Look
 from bcre_studies.reporting import style
 from bcre_studies.sweeps.each import each
 from bcre_studies.verification.stability.amplification import Numbers, Variant, rule_with, stable
@@ -96,7 +97,7 @@ class Case(NamedTuple):
     plane: str
 
     def limits(self) -> tuple[float, float]:
-        if self.model == "ca":
+        if self.model == AUTOMATON.name:
             return AUTOMATON_LIMITS[self.plane]
         return (DOP853_LIMITS if self.variant == "DOP853" else PDE_LIMITS)[self.plane]
 
@@ -106,7 +107,7 @@ class Case(NamedTuple):
 
     def grows(self) -> Test:
         """Measured."""
-        if self.model == "ca":
+        if self.model == AUTOMATON.name:
             return lambda numbers: automaton_grows(numbers, cast("Variant", self.variant))
         return lambda numbers: pde_grows(numbers, cast("ExplicitMethod", self.variant))
 
@@ -116,11 +117,11 @@ class Case(NamedTuple):
 
     def no_visible_growth(self) -> Test:
         """|G| <= 10^(1/n) in the n steps that are taken: growth that they can show."""
-        steps = STEPS if self.model == "ca" else PDE[1]
+        steps = STEPS if self.model == AUTOMATON.name else PDE[1]
         return self._no_faster_than(10 ** (1 / steps) - 1)
 
     def _no_faster_than(self, growth: float) -> Test:
-        if self.model == "ca":
+        if self.model == AUTOMATON.name:
             return lambda numbers: stable(numbers, cast("Variant", self.variant), growth)
         return lambda numbers: _pde_stable(cast("ExplicitMethod", self.variant), growth, numbers)
 
@@ -130,7 +131,7 @@ class Case(NamedTuple):
 
     def bound(self, numbers: Numbers) -> float:
         """The model's own largest step, in steps of these numbers."""
-        if self.model == "ca":
+        if self.model == AUTOMATON.name:
             rule = rule_with(numbers, cast("Variant", self.variant))
             pile = bcre_ca.Pile(np.zeros(8), np.ones(8))
             return bcre_ca.largest_stable_step(pile, rule, "periodic")
@@ -148,8 +149,8 @@ def _pde_stable(method: ExplicitMethod, growth: float, numbers: Numbers) -> bool
 
 def run() -> dict[str, pd.DataFrame]:
     """One row a plane; the planes row by row and their boundaries; positivity; LSODA and BDF."""
-    cases = [Case("ca", variant, plane) for variant in VARIANTS for plane in PLANES]
-    cases += [Case("pde", method, plane) for method in METHODS for plane in PLANES]
+    cases = [Case(AUTOMATON.name, variant, plane) for variant in VARIANTS for plane in PLANES]
+    cases += [Case(BCRE.name, method, plane) for method in METHODS for plane in PLANES]
     measured = each(_measure, cases, "stability")
     layers = each(_positivity, VARIANTS, "stability, R >= 0")
     return {
@@ -298,7 +299,7 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     table = tables["comparison"]
     limited = table["variant"] == "limited"
     dop853 = table["variant"] == "DOP853"
-    automaton = table["model"] == "ca"
+    automaton = table["model"] == AUTOMATON.name
     return [
         _predicted("the automaton's rules", table[automaton & ~limited], LINEAR),
         _predicted("the flux-limited rule", table[limited], LIMITED),
@@ -404,14 +405,14 @@ def _draw_plane(axis: Axes, head: pd.Series[Any], tables: dict[str, pd.DataFrame
 
     variant = next((v for v in VARIANTS if str(v) == head["variant"]), head["variant"])
     width, height = Case(head["model"], variant, head["plane"]).limits()
-    look = style.MODELS[head["model"]]
+    model = MODELS[head["model"]]
     for row in of("points").itertuples():
         stable_cells = [i for i, mark in enumerate(row.stable) if mark == "1"]
         runs = [(i * width / POINTS, width / POINTS) for i in stable_cells]
         axis.broken_barh(
             _joined(runs),
             (float(row.y) - height / POINTS / 2, height / POINTS),
-            color=look["color"],
+            color=model.color,
             alpha=0.22,
             linewidth=0,
         )
@@ -425,14 +426,13 @@ def _draw_plane(axis: Axes, head: pd.Series[Any], tables: dict[str, pd.DataFrame
         axis.plot(x, y, **line)
     axis.set(xlim=(0, width), ylim=(0, height))
     x_label, y_label = LABELS[head["plane"]]
-    cell = "d" if head["model"] == "ca" else "dx"
+    cell = "d" if model is AUTOMATON else "dx"
     axis.set_xlabel(x_label.replace("dt/d", f"dt/{cell}"))
     axis.set_ylabel(y_label.replace("dt/d", f"dt/{cell}"))
-    name = "automaton" if head["model"] == "ca" else "BCRE"
-    axis.set_title(f"{name}, {head['variant']}", loc="left")
+    axis.set_title(f"{model.label}, {head['variant']}", loc="left")
 
 
-LINES: dict[str, style.Look] = {
+LINES: dict[str, Look] = {
     "predicted": {"color": "black", "linewidth": 1.2, "label": "predicted, |G| = 1"},
     "bound": {
         "color": "0.35",
