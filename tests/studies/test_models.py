@@ -1,5 +1,9 @@
+import ast
 import math
+import subprocess
+import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,11 +12,12 @@ import bcre_ca
 import bcre_pde
 import bcre_pde.exact
 import bcre_pde.theory
+import bcre_studies
 from bcre_ca import theory as ca_theory
 from bcre_studies.models.automaton import rule_of
 from bcre_studies.models.bcre import problem_of
 from bcre_studies.models.effective import effective
-from bcre_studies.models.registry import AUTOMATON, BCRE
+from bcre_studies.models.registry import AUTOMATON, BCRE, MODELS
 from bcre_studies.models.run import frame_times, profiles
 from bcre_studies.scenes.scene import load
 
@@ -151,3 +156,41 @@ def test_automaton_of_the_climbing_wave_is_first_order_and_the_pde_far_nearer(re
     solution = BCRE.run(scene, [2.0], scene.domain.cells)
     assert np.abs(solution.R[-1] - exact).mean() <= 1e-6
     assert math.isclose(automaton.t[-1], 2.0)
+
+
+def test_models_are_listed_without_the_libraries_that_run_them():
+    code = (
+        "import sys; from bcre_studies.models.registry import MODELS; "
+        "print(*MODELS, sep=','); heavy = {'numpy', 'numba', 'pde', 'scipy', 'pandas'}; "
+        "print(sorted(heavy & set(sys.modules)))"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert ended.stdout.split("\n")[:2] == ["ca,pde,pde effective,height", "[]"]
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_every_model_runs_a_scene_with_no_more_than_its_name(name):
+    seen = []
+    run = MODELS[name].run(figure_2(), [0.0, 2.0, 4.0], 40, stop=lambda run: seen.append(run.t[-1]))
+    assert run.model == name
+    assert run.h.shape == run.R.shape == (3, 40)
+    assert run.t.tolist() == [0.0, 2.0, 4.0]
+    assert run.mass_error() < 1e-12
+    assert seen in ([], [0.0, 2.0, 4.0])
+
+
+def test_names_of_models_stand_in_the_registry_alone():
+    root = Path(bcre_studies.__file__).parent
+    names = set(MODELS)
+    for path in root.rglob("*.py"):
+        constants = {
+            node.value
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+            if isinstance(node, ast.Constant) and isinstance(node.value, str)
+        }
+        assert path.name == "registry.py" or not constants & names, path
+
+
+def test_every_model_looks_different_and_has_a_column_of_its_own():
+    for what in ("label", "column", "color", "marker"):
+        assert len({getattr(model, what) for model in MODELS.values()}) == len(MODELS)

@@ -1,6 +1,5 @@
 """The reports: the same bytes every time, nothing half-written, text as text, ``bcre check``."""
 
-import ast
 import hashlib
 import os
 import shutil
@@ -235,20 +234,6 @@ def test_stored_result_is_for_the_sources_and_libraries_that_made_it(tmp_path, m
     monkeypatch.setattr(store, "version", lambda library: "999")
     assert store._key("printed_rule") != keys[-1]
     assert store._key("one_variable") != store._key("printed_rule")
-
-
-def test_no_study_imports_another_whose_change_the_store_would_not_see():
-    folder = Path(str(bcre_studies.__file__)).parent
-    for path in folder.rglob("*.py"):
-        if "report" in path.parts:
-            continue
-        imported = {
-            name
-            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("bcre_studies")
-            for name in [str(node.module).rpartition(".")[2], *(alias.name for alias in node.names)]
-        }
-        assert not imported & set(catalog.STUDIES), path.name
 
 
 # Whole or not at all

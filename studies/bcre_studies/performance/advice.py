@@ -31,7 +31,7 @@ from bcre_studies.comparison.claim import Claim, Verdict
 from bcre_studies.comparison.compare import significant
 from bcre_studies.models.registry import BCRE, CANDIDATES, SCHEMES
 from bcre_studies.models.run import Run, frame_times
-from bcre_studies.performance.random_scenes import random_scene
+from bcre_studies.performance.random_scenes import kind_of, random_scene
 from bcre_studies.performance.record.record import read
 from bcre_studies.reporting import style
 from bcre_studies.scenes.listing import built_in_names
@@ -159,7 +159,7 @@ def _advised(index: int, scene: Scene, observable: str, true: Truth) -> dict[str
     resolved = true.resolved(observable)
     row: dict[str, Any] = {
         "scene": index,
-        "kind": scene.title.rsplit(" ", 1)[-1],
+        "kind": kind_of(scene),
         "observable": observable,
         "model": "",
         "cells": 0,

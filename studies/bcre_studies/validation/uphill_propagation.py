@@ -73,12 +73,12 @@ HALF_WIDTH = PULSE_WIDTH * math.sqrt(-math.log(EDGE))
 """From the centre of figure 3's pulse to its edge at the start."""
 
 Row = dict[str, Any]
-Case = tuple[Callable[..., list[Row]], tuple[float, ...]]
+Mechanism = tuple[Callable[..., list[Row]], tuple[float, ...]]
 
 
 def run() -> dict[str, pd.DataFrame]:
     """All mechanisms at the paper's cells, d = 1, and at d = 1/4."""
-    cases: list[Case] = [(scarp, (d,)) for d in CELLS]
+    cases: list[Mechanism] = [(scarp, (d,)) for d in CELLS]
     cases += [(reach, (d,)) for d in CELLS]
     cases += [(front, (d, excess)) for d in CELLS for excess in EXCESSES]
     cases += [(wave, (d, R0)) for d in CELLS for R0 in LAYERS]
@@ -87,7 +87,7 @@ def run() -> dict[str, pd.DataFrame]:
     return {"comparison": pd.DataFrame(rows)}
 
 
-def _case(case: Case) -> list[Row]:
+def _case(case: Mechanism) -> list[Row]:
     function, arguments = case
     return function(*arguments)
 

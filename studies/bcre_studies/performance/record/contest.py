@@ -197,9 +197,9 @@ _known: dict[str, Truth] = {}
 
 def _truth(key: str, scene: Scene) -> Truth:
     if key not in _known:
-        _known[key] = (
-            _exact(scene) if scene.title == load("climbing_wave").title else _solved(scene)
-        )
+        # Without diffusion and curvature the only scene is that of the nonlinear wave.
+        exactly = scene.material.D == scene.material.kappa == 0
+        _known[key] = _exact(scene) if exactly else _solved(scene)
     return _known[key]
 
 

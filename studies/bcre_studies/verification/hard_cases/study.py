@@ -60,7 +60,7 @@ LEAST_MASS_ERROR = 1e-13
 Row = dict[str, Any]
 
 
-class Case(NamedTuple):
+class Attempt(NamedTuple):
     """A scene in one model; ``scheme`` and ``step`` are the automaton's."""
 
     scene: str
@@ -80,12 +80,16 @@ def run() -> dict[str, pd.DataFrame]:
     }
 
 
-def _cases(scene: HardScene) -> list[Case]:
-    automaton = [Case(scene.name, AUTOMATON.name, s, step) for s in SCHEMES for step in scene.steps]
-    return automaton if scene.name == long_run().name else [*automaton, Case(scene.name, BCRE.name)]
+def _cases(scene: HardScene) -> list[Attempt]:
+    automaton = [
+        Attempt(scene.name, AUTOMATON.name, s, step) for s in SCHEMES for step in scene.steps
+    ]
+    return (
+        automaton if scene.name == long_run().name else [*automaton, Attempt(scene.name, BCRE.name)]
+    )
 
 
-class Outcome(NamedTuple):
+class Summary(NamedTuple):
     """What is read off a run: of all frames the smallest and the largest R, of the last one h."""
 
     x: Array
@@ -96,15 +100,15 @@ class Outcome(NamedTuple):
     lowered: int = 0
 
 
-def _try(case: Case) -> Row:
-    scene = long_run() if case.scene == long_run().name else scenes()[case.scene]
-    row = {"scene": case.scene, "model": case.model}
+def _try(attempt: Attempt) -> Row:
+    scene = long_run() if attempt.scene == long_run().name else scenes()[attempt.scene]
+    row = {"scene": attempt.scene, "model": attempt.model}
     row |= {"scheme": "", "step": ""}
-    if case.model == AUTOMATON.name:
-        row |= {"scheme": case.scheme, "step": str(case.step)}
+    if attempt.model == AUTOMATON.name:
+        row |= {"scheme": attempt.scheme, "step": str(attempt.step)}
     try:
         with np.errstate(all="ignore"):
-            end = _automaton(scene, case) if case.model == AUTOMATON.name else _pde(scene)
+            end = _automaton(scene, attempt) if attempt.model == AUTOMATON.name else _pde(scene)
     except (bcre_pde.SolveError, FloatingPointError, ValueError) as failure:
         return row | _refusal(failure)
     verdict = SURVIVES
@@ -137,7 +141,7 @@ def _decade(error: float) -> float:
     return float(f"1e{math.ceil(math.log10(max(error, LEAST_MASS_ERROR)))}")
 
 
-def _slope(end: Outcome) -> float | str:
+def _slope(end: Summary) -> float | str:
     if end.x.size < 2:
         return ""
     return round(float(-np.polyfit(end.x, end.h, 1)[0]), 3) + 0.0
@@ -149,15 +153,15 @@ def rule_for(scene: HardScene, scheme: Scheme) -> bcre_ca.Rule:
     return bcre_ca.Rule(m.v, m.D, m.gamma, m.Sc, scene.d, 1.0, scheme=scheme, kappa=m.kappa)
 
 
-def _automaton(scene: HardScene, case: Case) -> Outcome:
-    rule, x = rule_for(scene, case.scheme), scene.centres()
+def _automaton(scene: HardScene, attempt: Attempt) -> Summary:
+    rule, x = rule_for(scene, attempt.scheme), scene.centres()
     start = bcre_ca.Pile(*scene.problem.initial(x))
     times = [scene.until * (part + 1) / FRAMES for part in range(FRAMES)]
-    step = cast("Any", case.step)
+    step = cast("Any", attempt.step)
     piles = [start, *bcre_ca.frames(start, rule, times, scene.problem.ends, step)]
     end = piles[-1]
     balance = abs(end.mass(rule.d) + end.outflow - start.mass(rule.d))
-    return Outcome(
+    return Summary(
         x,
         balance / _sand(start.h, start.R, rule.d),
         min(float(pile.R.min()) for pile in piles),
@@ -171,12 +175,12 @@ def _sand(h: Array, R: Array, d: float) -> float:
     return d * float(np.abs(h).sum() + R.sum())
 
 
-def _pde(scene: HardScene) -> Outcome:
+def _pde(scene: HardScene) -> Summary:
     times = [scene.until * part / FRAMES for part in range(FRAMES + 1)]
     end = bcre_pde.solve(scene.problem, times, scene.cells)
     mass = end.mass()
     balance = abs(mass[-1] + end.outflow[-1] - mass[0])
-    return Outcome(
+    return Summary(
         end.x,
         balance / _sand(end.h[0], end.R[0], end.dx),
         float(end.R.min()),

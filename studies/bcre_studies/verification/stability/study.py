@@ -89,8 +89,8 @@ ANGLES = theory.ANGLES[::16]
 Test = Callable[[Numbers], bool]
 
 
-class Case(NamedTuple):
-    """One plane of one model: the automaton's variant or BCRE's method."""
+class Diagram(NamedTuple):
+    """A plane of steps for one model: the automaton's variant or BCRE's method."""
 
     model: str
     variant: Variant | ExplicitMethod
@@ -149,8 +149,8 @@ def _pde_stable(method: ExplicitMethod, growth: float, numbers: Numbers) -> bool
 
 def run() -> dict[str, pd.DataFrame]:
     """One row a plane; the planes row by row and their boundaries; positivity; LSODA and BDF."""
-    cases = [Case(AUTOMATON.name, variant, plane) for variant in VARIANTS for plane in PLANES]
-    cases += [Case(BCRE.name, method, plane) for method in METHODS for plane in PLANES]
+    cases = [Diagram(AUTOMATON.name, variant, plane) for variant in VARIANTS for plane in PLANES]
+    cases += [Diagram(BCRE.name, method, plane) for method in METHODS for plane in PLANES]
     measured = each(_measure, cases, "stability")
     layers = each(_positivity, VARIANTS, "stability, R >= 0")
     return {
@@ -165,13 +165,13 @@ def run() -> dict[str, pd.DataFrame]:
 Row = dict[str, Any]
 
 
-def _measure(case: Case) -> tuple[Row, list[Row], list[Row]]:
-    head: Row = {"model": case.model, "variant": str(case.variant), "plane": case.plane}
-    boundaries = [head | row for row in _boundaries(case)]
-    x, y = (limit * (np.arange(POINTS) + 0.5) / POINTS for limit in case.limits())
-    tests = case.grows(), case.predicted(), case.accepted
+def _measure(diagram: Diagram) -> tuple[Row, list[Row], list[Row]]:
+    head: Row = {"model": diagram.model, "variant": str(diagram.variant), "plane": diagram.plane}
+    boundaries = [head | row for row in _boundaries(diagram)]
+    x, y = (limit * (np.arange(POINTS) + 0.5) / POINTS for limit in diagram.limits())
+    tests = diagram.grows(), diagram.predicted(), diagram.accepted
     grows, predicted, accepted = (
-        np.array([[test(case.numbers(a, b)) for a in x] for b in y]) for test in tests
+        np.array([[test(diagram.numbers(a, b)) for a in x] for b in y]) for test in tests
     )
     rows = [
         head | {"y": round(float(b), 4), "stable": "".join("01"[not cell] for cell in line)}
@@ -200,13 +200,13 @@ def _measure(case: Case) -> tuple[Row, list[Row], list[Row]]:
     return summary, boundaries, rows
 
 
-def _boundaries(case: Case) -> list[Row]:
+def _boundaries(diagram: Diagram) -> list[Row]:
     """Along every ray, in the units of the plane: measured, predicted, and the model's own."""
-    width, height = case.limits()
-    grows, predicted, visible = case.grows(), case.predicted(), case.no_visible_growth()
+    width, height = diagram.limits()
+    grows, predicted, visible = diagram.grows(), diagram.predicted(), diagram.no_visible_growth()
     rows = []
     for angle in (np.arange(RAYS) + 0.5) / RAYS * np.pi / 2:
-        ray = case.numbers(width * np.cos(angle), height * np.sin(angle))
+        ray = diagram.numbers(width * np.cos(angle), height * np.sin(angle))
         expected = _last(predicted, ray, 0.02, 2.0)
         shown = _last(visible, ray, 0.02, 2.0)
         found = _last(lambda numbers: not grows(numbers), ray, 0.3 * expected, 2.5 * expected)
@@ -216,7 +216,7 @@ def _boundaries(case: Case) -> list[Row]:
                 "predicted": significant(expected, 3),
                 "visible": significant(shown, 3),
                 "measured": significant(found, 3),
-                "bound": significant(case.bound(ray), 3),
+                "bound": significant(diagram.bound(ray), 3),
             }
         )
     return rows
@@ -404,7 +404,7 @@ def _draw_plane(axis: Axes, head: pd.Series[Any], tables: dict[str, pd.DataFrame
         return rows[(rows["variant"] == head["variant"]) & (rows["plane"] == head["plane"])]
 
     variant = next((v for v in VARIANTS if str(v) == head["variant"]), head["variant"])
-    width, height = Case(head["model"], variant, head["plane"]).limits()
+    width, height = Diagram(head["model"], variant, head["plane"]).limits()
     model = MODELS[head["model"]]
     for row in of("points").itertuples():
         stable_cells = [i for i, mark in enumerate(row.stable) if mark == "1"]
