@@ -12,7 +12,16 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from bcre_studies.publishing.wording import figure_name, fixed, listed, number, of, percent, span
+from bcre_studies.publishing.wording import (
+    figure_name,
+    fixed,
+    listed,
+    number,
+    numeric,
+    of,
+    percent,
+    span,
+)
 
 Tables = Mapping[str, Mapping[str, pd.DataFrame]]
 
@@ -112,7 +121,7 @@ def headline(tables: Tables) -> Headline:
         pulses=_pulses(tables["repose_return"]["comparison"]),
         coarse=_race(reach, COARSE),
         fine=_race(reach, FINE),
-        mass_error=float(tables["hard_cases"]["comparison"]["mass_error_at_most"].max()),
+        mass_error=float(numeric(tables["hard_cases"]["comparison"]["mass_error_at_most"]).max()),
         orders=_orders(tables["order_of_accuracy"]["comparison"]),
     )
 

@@ -150,6 +150,7 @@ def _of_page(name: str, content: Mapping[str, Any]) -> dict[str, Any]:
     views = content["tables"]
     return {
         "title": "Quality checks",
+        "script": script("tables"),
         "description": "Speed goals, faults and other claims about the code.",
         "sections": (
             ("index.html", "Report"),

@@ -16,6 +16,7 @@ from bcre_studies.publishing.wording import (
     fixed,
     listed,
     number,
+    numeric,
     of,
     percent,
     span,
@@ -306,7 +307,7 @@ def _hard_cases(tables: Tables) -> list[str]:
     rows = tables["comparison"]
     ended = rows["verdict"].str.startswith("survives")
     refused = rows["verdict"].str.startswith("refused")
-    negative = rows["smallest_R"] < 0
+    negative = numeric(rows["smallest_R"]) < 0
     return [
         "Slopes that rise, dry cells, single cells, ten million steps: each in every scheme of the "
         "automaton and in BCRE.",

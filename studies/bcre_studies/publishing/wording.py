@@ -59,3 +59,8 @@ def of(table: pd.DataFrame, **wanted: object) -> pd.DataFrame:
     for column, value in wanted.items():
         table = table[table[column] == value]
     return table
+
+
+def numeric(column: pd.Series) -> pd.Series:
+    """A column as numbers; what is text in it, or nothing, is not a number."""
+    return pd.to_numeric(column, errors="coerce")

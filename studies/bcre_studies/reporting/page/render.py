@@ -38,9 +38,10 @@ def style_sheet() -> Markup:
     return Markup((HERE / "page.css").read_text(encoding="utf-8"))
 
 
-def script() -> Markup:
-    """The script's parts as one strict function, for a ``<script>`` element."""
-    parts = [(HERE / "script" / f"{name}.js").read_text(encoding="utf-8") for name in SCRIPT]
+def script(*names: str) -> Markup:
+    """Parts of the script, or all, as one strict function for a ``<script>`` element."""
+    files = [HERE / "script" / f"{name}.js" for name in names or SCRIPT]
+    parts = [path.read_text(encoding="utf-8") for path in files]
     return Markup('(() => {\n"use strict";\n' + "\n".join(parts) + "})();\n")
 
 

@@ -1,4 +1,4 @@
-// What runs when the page is there. Tables and players are set up when they come near the screen.
+// What runs when the page is there: a player is set up when it comes near the screen.
 
 function whenNear(element, action) {
   const watch = new IntersectionObserver((seen) => {
@@ -15,11 +15,6 @@ for (const [id, start] of [["watch", startPlayer], ["try", startLive]]) {
   const root = document.querySelector(`#${id} [data-part="stage"]`);
   if (root) whenNear(root, () => redraws.push(start(root)));
 }
-document.querySelectorAll("table.sortable").forEach((table) => {
-  const holder = table.closest("details");
-  if (holder) holder.addEventListener("toggle", () => makeSortable(table), { once: true });
-  else makeSortable(table);
-});
 
 const redraw = () => redraws.forEach((draw) => draw());
 window.addEventListener("resize", redraw);

@@ -29,3 +29,9 @@ function makeSortable(table) {
     });
   });
 }
+
+document.querySelectorAll("table.sortable").forEach((table) => {
+  const holder = table.closest("details");
+  if (holder) holder.addEventListener("toggle", () => makeSortable(table), { once: true });
+  else makeSortable(table);
+});
