@@ -3,7 +3,7 @@ SHELL := /bin/sh
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: help install reports speed test bench check lint clean
+.PHONY: help install reports speed test faults bench check lint clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-9s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -30,6 +30,9 @@ test: install ## run the tests; those of the page where Chromium is installed
 		|| $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --require-hashes -r requirements-browser.lock \
 		|| echo 'Playwright cannot be installed here: the page is not tried in a browser' >&2
 	$(BIN)/python -m pytest
+
+faults: install ## try every fault again and write reports/quality/faults.csv
+	$(BIN)/python tests/robustness/faults.py
 
 bench: install ## time the automaton against what would be used instead (under 3 minutes)
 	@$(BIN)/python -c 'import fipy' 2>/dev/null \

@@ -6,7 +6,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from bcre_studies.comparison.claim import Claim, Verdict
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.publishing.deciding import NUMBERS, deciding_number
 from bcre_studies.publishing.headline import answers, certainty, headline, short_answer
 from bcre_studies.publishing.stories import STORIES, story_of

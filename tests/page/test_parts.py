@@ -12,7 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from bcre_studies.comparison.claim import Claim, Verdict
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.publishing.film import film
 from bcre_studies.publishing.provenance import provenance, sources_digest
 from bcre_studies.publishing.study_views import mark_of, table_view

@@ -6,9 +6,8 @@ import pytest
 
 import bcre_ca
 import bcre_pde
-from bcre_studies.comparison.claim import Verdict
-from bcre_studies.verification.hard_cases import adaptive_step, scarp_grids
-from bcre_studies.verification.hard_cases import study as study
+from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.verification.hard_cases import adaptive_step, scarp_grids, study
 from bcre_studies.verification.hard_cases.study import FAILS, REFUSED, SURVIVES, Attempt
 
 SCENES = study.scenes()
@@ -121,7 +120,7 @@ def test_adapted_step_of_figure_2_gives_the_fixed_steps_R():
     assert row["lowered"] > 3
 
 
-def made_up(told="in cell 3, t = 4: dt = 1", smallest=0.0, mass=1e-13, faults="as expected"):
+def made_up(told="in cell 3, t = 4: dt = 1", smallest=0.0, mass=1e-13):
     rows = [
         {"scene": study.long_run().name, "verdict": SURVIVES, "told": "", "smallest_R": smallest},
         {"scene": "A", "verdict": FAILS, "told": told, "smallest_R": ""},
@@ -136,7 +135,6 @@ def made_up(told="in cell 3, t = 4: dt = 1", smallest=0.0, mass=1e-13, faults="a
         "comparison": pd.DataFrame(table),
         "scarp": scarp_grids.with_changes(scarp_rows(0.0)),
         "adaptive_step": pd.DataFrame([adaptive | {"fixed_steps": 2, "verdict": "agree"}]),
-        "faults": pd.DataFrame([{"fault": "disk full", "verdict": faults}]),
     }
 
 
@@ -149,5 +147,21 @@ def test_claims_fail_by_what_they_claim():
     assert failing(told="it broke at t = 4") == ["each failing model says where"]
     assert failing(smallest=-0.1) == ["R >= 0"]
     assert failing(mass=1e-11) == ["mass"]
-    assert failing(faults="not") == ["faults"]
     assert failing(smallest=float("nan")) == ["finite"]
+
+
+def test_panels_of_the_scarp_name_what_they_show():
+    from matplotlib.figure import Figure
+
+    table = pd.DataFrame(
+        [
+            {"model": model, "kappa": kappa, "cells": cells, "max_R": 1.0, "place": 2.0}
+            for model, kappa in scarp_grids.SERIES
+            for cells in (100, 200)
+        ]
+    )
+    axis = Figure().subplots()
+    scarp_grids.draw(axis, table, "max_R", "max R")
+    assert axis.get_ylabel() == "max R"
+    names = {line.get_label() for line in axis.get_lines()}
+    assert names == {name for _, name in scarp_grids.SERIES.values()}

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bcre_ca.height_only import SETTLED, settled
-from bcre_studies.comparison.claim import Verdict
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import HEIGHT_ONLY
 from bcre_studies.observables.outcome import slope
 from bcre_studies.scenes.scene import load

@@ -4,14 +4,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bcre_studies.comparison.claim import Verdict
-from bcre_studies.comparison.compare import (
-    refine,
-    relative_difference,
-    relative_error,
-)
+from bcre_studies.comparison.compare import refine
+from bcre_studies.comparison.difference import relative_difference
+from bcre_studies.comparison.error import SHARE, relative_error
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.automaton import rule_of
-from bcre_studies.models.bcre import SHARE
 from bcre_studies.models.effective import effective
 from bcre_studies.models.registry import AUTOMATON
 from bcre_studies.models.run import Run
@@ -68,7 +65,7 @@ def test_difference_of_figure_1_in_mid_climb_is_both_effective_coefficients(refi
         coarsest=200 if refinement == 4 else 100,
         finest=800,
     )
-    difference = relative_difference(automaton, refined.measured)
+    difference = relative_difference(automaton, refined.value)
     assert refined.resolved
     assert relative_error(refined) <= SHARE * max(difference, TOLERANCE)
     assert near(difference, FIGURE_1[refinement], 0.20)

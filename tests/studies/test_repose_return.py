@@ -3,7 +3,7 @@
 import pandas as pd
 import pytest
 
-from bcre_studies.comparison.claim import Verdict
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON, BCRE
 from bcre_studies.observables.outcome import slope
 from bcre_studies.validation.repose_return import study as repose_return

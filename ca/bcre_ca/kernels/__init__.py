@@ -8,9 +8,7 @@ reassociated arithmetic.
 
 from __future__ import annotations
 
-import hashlib
 import math
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +17,7 @@ from numpy.typing import NDArray
 from bcre_ca.coefficients import Coefficients, Parameters
 from bcre_ca.kernels import driver
 from bcre_ca.rule import Ends, Rule
+from bcre_ca.sources import SOURCES
 from bcre_ca.step import period_drop
 
 Array = NDArray[np.float64]
@@ -26,14 +25,7 @@ Array = NDArray[np.float64]
 BLOCK = driver.BLOCK
 
 
-def _digest() -> str:
-    digest = hashlib.sha256()
-    for path in sorted(Path(__file__).parents[1].rglob("*.py")):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()
-
-
-_fixed, _followed, _batch, _bound = driver.entries(_digest())
+_fixed, _followed, _batch, _bound = driver.entries(SOURCES)
 
 
 class Followed(NamedTuple):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numba
 
 from bcre_ca.exchange import carried, eroded, settle
-from bcre_ca.kernels.sweep import add
+from bcre_ca.sums import add
 
 
 @numba.njit(error_model="numpy")

@@ -9,8 +9,8 @@ import numba
 import numpy as np
 
 from bcre_ca.exchange import spread
-from bcre_ca.kernels.sweep import add
 from bcre_ca.limited import corrected, predicted
+from bcre_ca.sums import add
 
 
 @numba.njit(error_model="numpy")

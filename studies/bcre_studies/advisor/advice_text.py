@@ -16,7 +16,7 @@ from bcre_studies.advisor.options import PRECISE, Option
 from bcre_studies.advisor.pilot import with_model
 from bcre_studies.advisor.question import Question
 from bcre_studies.advisor.scene_text import scene_text
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.rounding import significant
 from bcre_studies.models.bcre import COARSEST
 from bcre_studies.models.registry import AUTOMATON, BCRE, CANDIDATES, SCHEMES
 from bcre_studies.running.run import require_runnable

@@ -27,8 +27,9 @@ from bcre_studies.advisor.advise import Advice, Effort, advise
 from bcre_studies.advisor.deviation import deviation, uncertainty
 from bcre_studies.advisor.pilot import run_model
 from bcre_studies.advisor.question import Question
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import BCRE, CANDIDATES, SCHEMES
 from bcre_studies.models.run import Run, frame_times
 from bcre_studies.performance.random_scenes import kind_of, random_scene
@@ -36,13 +37,12 @@ from bcre_studies.performance.record.record import read
 from bcre_studies.reporting import style
 from bcre_studies.scenes.listing import built_in_names
 from bcre_studies.scenes.scene import Scene, load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 from bcre_studies.timing.costs import closures_of, recorded
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-READS_RECORD = True  # the costs
 SCENES = 60
 TOLERANCE = 0.05
 FRAMES = 3

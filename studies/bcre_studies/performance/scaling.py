@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
-from bcre_studies.comparison.claim import Claim, Verdict
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.performance.record.record import read
 from bcre_studies.reporting import style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-READS_RECORD = True
 PAPERS_CELLS = 100
 """Cells of d = 1, as in the paper, of a slope as long as our scenes of its figures."""
 

@@ -26,17 +26,17 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import SCHEMES
 from bcre_studies.performance.record import contest, work_precision
 from bcre_studies.performance.record.record import TARGETS, cheapest, read
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-READS_RECORD = True
 PAPERS, *BETTER = (scheme.label for scheme in SCHEMES.values())
 TRUTH_SHARE = 0.1
 """An error is told only down to where the truth's own is this part of it."""

@@ -10,7 +10,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 import pandas as pd
 
-from bcre_studies.comparison.claim import Claim, Verdict
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.publishing.wording import fixed, number, of, percent, span
 
 Key = tuple[str, str]

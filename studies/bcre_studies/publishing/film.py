@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.rounding import significant
 from bcre_studies.models.bcre import SHARE
 from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE, Model
 from bcre_studies.models.run import frame_times
@@ -19,7 +19,7 @@ from bcre_studies.reporting.page.packing import pack
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.listing import built_in_names
 from bcre_studies.scenes.scene import load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 FRAMES = 81
 FINER = 4

@@ -19,7 +19,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullLocator
 
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.rounding import significant
 from bcre_studies.models.bcre import SHARE
 from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED
 from bcre_studies.models.registry import EFFECTIVE as COUNTED
@@ -28,7 +28,7 @@ from bcre_studies.publishing.wording import figure_name
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 Tables = dict[str, pd.DataFrame]
 

@@ -10,7 +10,8 @@ from typing import Any
 import pandas as pd
 
 from bcre_studies.catalog import STUDIES
-from bcre_studies.comparison.claim import Claim, Verdict
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.publishing.finding import Finding
 from bcre_studies.publishing.store import Tables
 from bcre_studies.publishing.stories import story_of

@@ -24,7 +24,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.rounding import significant
 from bcre_studies.models.registry import AUTOMATON, BCRE, CANDIDATES, SCHEMES
 from bcre_studies.models.run import frame_times
 from bcre_studies.scenes.domain import Array
@@ -47,7 +47,8 @@ FRAMES = 40
 COURANT = 0.1
 """Of the measured runs: well below every bound."""
 
-RECORD = REPORTS / "speed" / "costs.csv"
+READS = "speed/costs.csv"
+RECORD = REPORTS / READS
 
 
 @dataclass(frozen=True)

@@ -18,14 +18,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON, BCRE, HEIGHT_ONLY, Look
 from bcre_studies.models.run import Run
 from bcre_studies.observables.outcome import slope
 from bcre_studies.reporting import style
 from bcre_studies.scenes.scene import Scene, load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -26,15 +26,12 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import (
-    Measure,
-    compare,
-    refine,
-    relative_difference,
-    relative_error,
-    significant,
-)
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.compare import Measure, compare, refine
+from bcre_studies.comparison.difference import relative_difference
+from bcre_studies.comparison.error import relative_error
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.effective import effective
 from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED, MODELS
 from bcre_studies.models.run import Run, frame_times, profiles
@@ -42,7 +39,7 @@ from bcre_studies.observables.fronts import scarps
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -103,10 +100,10 @@ def _compare_case(case: tuple[str, int]) -> dict[str, Any]:
         "d": scene.d,
         **result.row(),
         "difference_with_D_eff": significant(
-            relative_difference(result.automaton, spread.measured), 3
+            relative_difference(result.automaton, spread.value), 3
         ),
         "difference_with_D_eff_error": significant(relative_error(spread), 1),
-        **_of_schemes(scene, times, measure, result.pde.measured),
+        **_of_schemes(scene, times, measure, result.pde.value),
     }
 
 
@@ -133,7 +130,7 @@ def _compare_climb(name: str) -> dict[str, Any]:
         "case": name,
         "d": scene.d,
         **result.row(),
-        **_of_schemes(scene, times, climb_time, result.pde.measured),
+        **_of_schemes(scene, times, climb_time, result.pde.value),
     }
 
 

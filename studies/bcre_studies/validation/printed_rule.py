@@ -28,13 +28,14 @@ import pandas as pd
 
 import bcre_ca
 from bcre_ca.rule import Order, Sign
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.automaton import rule_of
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -13,13 +13,14 @@ import numpy as np
 import pandas as pd
 from scipy.stats import bootstrap
 
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED
 from bcre_studies.observables.fronts import roughness
 from bcre_studies.reporting import style
 from bcre_studies.scenes.scene import load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

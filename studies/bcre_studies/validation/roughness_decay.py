@@ -26,18 +26,19 @@ import pandas as pd
 
 import bcre_ca.theory
 import bcre_pde.theory
-from bcre_studies.comparison.claim import Claim, Verdict, worst
-from bcre_studies.comparison.compare import significant
-from bcre_studies.comparison.scaled import compare_each
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.compare import compare_each
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict, worst
 from bcre_studies.models.automaton import rule_of
 from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED, EFFECTIVE, MODELS, Model
 from bcre_studies.models.run import Run
-from bcre_studies.observables import fronts as observe
+from bcre_studies.observables import fronts
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, load
 from bcre_studies.scenes.terms import NOISE_WAVES
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -134,7 +135,7 @@ def _modes(case: tuple[str, float]) -> list[Row]:
         return [
             part
             for k in waves
-            for part in split(observe.mode_rate(run.x, before, after, SPAN, k), k)
+            for part in split(fronts.mode_rate(run.x, before, after, SPAN, k), k)
         ]
 
     rates = [mode_rates(field, d, k) for k in waves]
@@ -144,7 +145,7 @@ def _modes(case: tuple[str, float]) -> list[Row]:
     )
     # BCRE's decay rate may be zero, its phase speed may not.
     scales = [value for pair in zip(own[::2], nominal[1::2], strict=True) for value in pair]
-    results = compare_each(scene, [0.0, SPAN], measured, scales, TOLERANCE)
+    results = compare_each(scene, [0.0, SPAN], measured, scales, TOLERANCE, finest=800)
     rows = [
         {
             "quantity": names[index % 2],
@@ -169,9 +170,11 @@ def _rough_slope() -> tuple[list[Row], pd.DataFrame]:
         return float(HEIGHT * np.sqrt(np.mean(np.exp(2 * t * np.array(decays)))))
 
     def measured(run: Run) -> list[float]:
-        return [observe.roughness(u) for u in run.u[1:]]
+        return [fronts.roughness(u) for u in run.u[1:]]
 
-    results = compare_each(scene, [0.0, *SHOWN], measured, HEIGHT, TOLERANCE)
+    results = compare_each(
+        scene, [0.0, *SHOWN], measured, [HEIGHT] * len(SHOWN), TOLERANCE, finest=800
+    )
     table = [
         {
             "quantity": RMS,
@@ -190,7 +193,7 @@ def _rough_slope() -> tuple[list[Row], pd.DataFrame]:
         {
             "model": model.name,
             "t": t,
-            "RMS": significant(observe.roughness(u), 4),
+            "RMS": significant(fronts.roughness(u), 4),
             "closed form": significant(linear(model, t), 4),
         }
         for model, run in runs.items()

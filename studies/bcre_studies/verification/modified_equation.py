@@ -24,13 +24,12 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from bcre_studies.comparison.claim import Claim, Verdict, verdict_of
-from bcre_studies.comparison.compare import (
-    refine,
-    relative_difference,
-    relative_error,
-    significant,
-)
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.compare import refine
+from bcre_studies.comparison.difference import relative_difference
+from bcre_studies.comparison.error import relative_error
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict, verdict_of
 from bcre_studies.models.effective import effective
 from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE, Look
 from bcre_studies.models.run import Run
@@ -38,7 +37,7 @@ from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.listing import built_in_names
 from bcre_studies.scenes.scene import Scene, load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -91,8 +90,7 @@ def _compare(case: tuple[str, str, int, int]) -> dict[str, Any]:
         for variant, changed in _variants(scene).items()
     }
     differences = {
-        variant: relative_difference(automaton, refined.measured)
-        for variant, refined in found.items()
+        variant: relative_difference(automaton, refined.value) for variant, refined in found.items()
     }
     for variant in VARIANTS:
         row[variant] = significant(differences[variant], 3)

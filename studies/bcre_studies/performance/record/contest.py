@@ -17,8 +17,7 @@ import numpy as np
 
 import bcre_ca
 import bcre_pde
-from bcre_pde import exact
-from bcre_pde.solve import Method
+from bcre_pde import Method, exact
 from bcre_studies.models.automaton import rule_of
 from bcre_studies.models.bcre import problem_of, run_of
 from bcre_studies.models.registry import SCHEMES

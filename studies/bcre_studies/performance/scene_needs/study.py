@@ -32,8 +32,9 @@ import numpy as np
 import pandas as pd
 from matplotlib.colors import BoundaryNorm, ListedColormap
 
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.observables.named import NAMES, posed, scale, value
 from bcre_studies.performance.record import specialisation
 from bcre_studies.performance.scene_needs.ablation import (
@@ -58,13 +59,12 @@ from bcre_studies.performance.scene_needs.smallest import (
 from bcre_studies.reporting import style
 from bcre_studies.scenes.listing import built_in_names
 from bcre_studies.scenes.scene import load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-READS_RECORD = True
 TOLERANCES = {"1": 0.01, "5": 0.05}
 WHY = (
     "1 % is about what a measurement of a pile can tell, 5 % the width of a line in the paper's "

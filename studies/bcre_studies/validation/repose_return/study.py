@@ -20,6 +20,7 @@ slopes are relative to Sc, since S - Sc may vanish.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,15 +29,18 @@ import pandas as pd
 import bcre_ca.theory
 import bcre_pde
 import bcre_pde.theory
-from bcre_studies.comparison.claim import Claim, Verdict, worst
-from bcre_studies.comparison.measured import Measured, numbers, shown
-from bcre_studies.models.bcre import SHARE, problem_of
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.compare import Comparison
+from bcre_studies.comparison.error import allowed_error
+from bcre_studies.comparison.rounding import shown
+from bcre_studies.comparison.verdict import Verdict, worst
+from bcre_studies.models.bcre import problem_of
 from bcre_studies.models.effective import effective
-from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED, EFFECTIVE, MODELS
+from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED, EFFECTIVE, MODELS, Model
 from bcre_studies.observables.outcome import slope, spent
 from bcre_studies.reporting import style
 from bcre_studies.scenes.scene import Scene, load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 from bcre_studies.validation.repose_return.repeated_pulses import (
     SOLVER_TOLERANCE,
     slopes_of_automaton,
@@ -121,23 +125,23 @@ def single(kind: str, excess: float, pulse: float) -> dict[str, Any]:
     end = AUTOMATON.run(scene, times, stop=spent)
     automaton = slope(end.x, end.h[-1]) - Sc
 
-    def refined(scene: Scene) -> Measured:
+    def refined(scene: Scene) -> bcre_pde.Measured:
         found = bcre_pde.solve_refined(
             problem_of(scene),
             times,
             lambda solution: slope(solution.x, solution.h[-1]) - Sc,
-            lambda value: SHARE * max(abs(value - automaton), TOLERANCE * Sc),
+            lambda value: allowed_error(automaton, value, TOLERANCE, Sc),
             coarsest=GRIDS[0],
             finest=GRIDS[-1],
             tolerance=SOLVER_TOLERANCE,
             stop=spent,
         )
-        return Measured(found.measured, found.error)
+        return bcre_pde.Measured(found.value, found.error)
 
-    row = numbers(automaton, refined(scene), refined(effective_of(scene)), TOLERANCE, Sc)
+    pde, effective = refined(scene), refined(effective_of(scene))
     return {
         **_head(kind, excess, pulse, 1),
-        **row,
+        **Comparison(automaton, pde, effective, TOLERANCE, Sc).row(),
         "automaton_theory": closed_form(scene, scene.d),
         "pde_theory": closed_form(scene, 0.0),
     }
@@ -148,30 +152,33 @@ def repeated(excess: float, pulse: float) -> tuple[Rows, Rows]:
     scene = scene_of(SLOW, excess, pulse).with_changes(until=1000.0)
     Sc = scene.material.Sc
     automaton = np.array(slopes_of_automaton(scene, RELEASES)) - Sc
-    on_grids = {
-        model: [np.array(slopes_of_pde(changed, cells, RELEASES)) - Sc for cells in GRIDS]
-        for model, changed in ((BCRE, scene), (EFFECTIVE, effective_of(scene)))
+
+    def refined(changed: Scene) -> list[bcre_pde.Measured]:
+        def measure_on(cells: int) -> tuple[None, list[float]]:
+            slopes = slopes_of_pde(changed, cells, RELEASES)
+            return None, [float(after) for after in np.array(slopes) - Sc]
+
+        found = bcre_pde.measure_refined(measure_on, GRIDS)
+        return [bcre_pde.Measured(after.value, after.error) for after in found]
+
+    pde, effective = refined(scene), refined(effective_of(scene))
+    values: dict[Model, Sequence[float]] = {
+        AUTOMATON: automaton.tolist(),
+        BCRE: [after.value for after in pde],
+        EFFECTIVE: [after.value for after in effective],
     }
-    ends = {AUTOMATON: automaton} | {model: grids[-1] for model, grids in on_grids.items()}
     head = {"S0 - Sc": excess, "pulse": pulse}
     points = [
-        {**head, "pulses": n + 1, "model": model.name, "S - Sc": values[n]}
-        for model, values in ends.items()
+        {**head, "pulses": n + 1, "model": model.name, "S - Sc": slopes[n]}
+        for model, slopes in values.items()
         for n in range(RELEASES)
     ]
     rows = []
     for n in SHOWN:
-        after = {
-            model: _finest(*(float(values[n - 1]) for values in grids))
-            for model, grids in on_grids.items()
-        }
-        row = numbers(float(automaton[n - 1]), after[BCRE], after[EFFECTIVE], TOLERANCE, Sc)
+        of_models = float(automaton[n - 1]), pde[n - 1], effective[n - 1]
+        row = Comparison(*of_models, TOLERANCE, Sc).row()
         rows.append({**_head(REPEATED, excess, pulse, n), **row})
     return rows, points
-
-
-def _finest(coarse: float, medium: float, fine: float) -> Measured:
-    return Measured(fine, bcre_pde.grid_convergence_index(fine, medium, coarse).error)
 
 
 def closed_form(scene: Scene, d: float) -> float:

@@ -32,14 +32,15 @@ import pandas as pd
 import bcre_ca.theory
 import bcre_pde
 import bcre_pde.theory
-from bcre_studies.comparison.claim import Claim, Verdict, verdict_of, within, worst
-from bcre_studies.comparison.compare import to_error
-from bcre_studies.comparison.measured import Measured, numbers, shown
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.compare import Comparison
+from bcre_studies.comparison.rounding import shown, to_error
+from bcre_studies.comparison.verdict import Verdict, verdict_of, within, worst
 from bcre_studies.models.bcre import problem_of
 from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED, EFFECTIVE, Model
 from bcre_studies.observables.outcome import Outcome
 from bcre_studies.reporting import style
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 from bcre_studies.validation.second_critical_angle.climb import (
     Bracket,
     climb,
@@ -115,12 +116,12 @@ def sd_row(v: float, D: float, gamma: float, d: float) -> dict[str, Any]:
     return {
         **_head(SD, material, d),
         FINER: shown(measure_sd_automaton(material, d / 4)),
-        **numbers(
+        **Comparison(
             measure_sd_automaton(material, d),
             measure_sd_pde(material),
             measure_sd_pde(effective_for_growth(material, d)),
             TOLERANCE,
-        ),
+        ).row(),
         "automaton_theory": shown(bcre_ca.theory.second_critical_excess(v, D, gamma, d)),
         "pde_theory": shown(_continuous(material)),
     }
@@ -134,12 +135,12 @@ def calibrated_row(v: float, D: float, gamma: float, d: float) -> dict[str, Any]
     return {
         **_head(SD_CALIBRATED, material, d),
         FINER: shown(measure_sd_of(calibrated_rule(material, d / 4))),
-        **numbers(
+        **Comparison(
             measure_sd_of(rule),
             measure_sd_pde(material),
             measure_sd_pde(effective_for_growth(left, d)),
             TOLERANCE,
-        ),
+        ).row(),
         "automaton_theory": shown(rule.second_critical_slope() - rule.Sc),
         "pde_theory": shown(_continuous(material)),
     }
@@ -176,12 +177,12 @@ def threshold_row(pulse: float) -> dict[str, Any]:
     return {
         **_head(THRESHOLD, _figure1(), 1.0, pulse=pulse),
         FINER: to_error(finer.value, finer.error),
-        **numbers(
+        **Comparison(
             to_error(automaton.value, automaton.error),
-            Measured(pde.value, pde.error),
-            Measured(effective.value, effective.error),
+            bcre_pde.Measured(pde.value, pde.error),
+            bcre_pde.Measured(effective.value, effective.error),
             TOLERANCE,
-        ),
+        ).row(),
     }
 
 

@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE, MODELS, Model
 from bcre_studies.observables.fronts import scarps
 from bcre_studies.scenes.scene import load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -112,9 +113,9 @@ def claim(table: pd.DataFrame) -> Claim:
 
 def draw(axis: Axes, table: pd.DataFrame, key: str, label: str) -> None:
     """One measured quantity against cells."""
-    for (model, kappa), (look, label) in SERIES.items():
+    for (model, kappa), (look, name) in SERIES.items():
         rows = _of(table, model, kappa)
-        axis.semilogx(rows["cells"], rows[key], **look.marked_line | {"label": label})
+        axis.semilogx(rows["cells"], rows[key], **look.marked_line | {"label": name})
     cells = sorted(set(table["cells"]))
     axis.set_xticks(cells, [str(count) for count in cells])
     axis.minorticks_off()

@@ -20,8 +20,8 @@ no solution that its grid would converge to. The table ``scarp`` refines both: m
 the scarp at t = 250 with kappa = 0 and kappa = 0.005, and the automaton, whose cell takes the
 part of the curvature term, kappa_eff = gamma d/2, so that it too depends on its grid.
 
-The tables ``scarp``, ``adaptive_step`` and ``faults`` are those of the modules ``scarp_grids``,
-``adaptive_step`` and ``faults``.
+The tables ``scarp`` and ``adaptive_step`` are those of the modules ``scarp_grids`` and
+``adaptive_step``.
 """
 
 from __future__ import annotations
@@ -35,13 +35,13 @@ import pandas as pd
 import bcre_ca
 import bcre_pde
 from bcre_ca.rule import Scheme
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON, BCRE, Look
 from bcre_studies.reporting import style
-from bcre_studies.robustness import faults
 from bcre_studies.scenes.domain import Array
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 from bcre_studies.verification.hard_cases import adaptive_step, scarp_grids
 from bcre_studies.verification.hard_cases.hard_scenes import HardScene, long_run, scenes
 
@@ -70,13 +70,12 @@ class Attempt(NamedTuple):
 
 
 def run() -> dict[str, pd.DataFrame]:
-    """One row a scene and model; the scarp, grid by grid; steps that adapt; faults."""
+    """One row a scene and model; the scarp, grid by grid; steps that adapt."""
     cases = [case for scene in [*scenes().values(), long_run()] for case in _cases(scene)]
     return {
         "comparison": pd.DataFrame(each(_try, cases, "hard_cases")),
         "scarp": scarp_grids.run(),
         "adaptive_step": adaptive_step.run(),
-        "faults": faults.try_all(),
     }
 
 
@@ -190,7 +189,7 @@ def _pde(scene: HardScene) -> Summary:
 
 
 def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
-    """Finite numbers, mass, failures that say where; the scarp; steps that adapt; faults."""
+    """Finite numbers, mass, failures that say where; the scarp; steps that adapt."""
     table = tables["comparison"]
     return [
         _finite(tables),
@@ -199,7 +198,6 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
         _not_negative(table),
         scarp_grids.claim(tables["scarp"]),
         adaptive_step.claim(tables["adaptive_step"]),
-        _faults(tables["faults"]),
     ]
 
 
@@ -268,18 +266,6 @@ def _not_negative(table: pd.DataFrame) -> Claim:
         "differences of high order undershoot ahead of a scarp that a cell cannot resolve, and "
         "exchange nothing there",
         tolerance="1e-12 of the largest R: rounding",
-    )
-
-
-def _faults(table: pd.DataFrame) -> Claim:
-    good = table["verdict"] == "as expected"
-    others = "" if good.all() else f"; not so: {', '.join(table.loc[~good, 'fault'])}"
-    return Claim(
-        name="faults",
-        statement="Every fault tried ended as it should.",
-        verdict=_word(good.all()),
-        evidence=f"{int(good.sum())} of {len(table)} did{others}",
-        tolerance="what should come of each stands in the table before it is tried",
     )
 
 
