@@ -238,8 +238,8 @@ def short_answer(found: Headline) -> str:
         return "Yes: at the paper’s parameters it predicts what BCRE predicts."
     if judged and all(gap.left <= SMALL for gap in judged):
         return (
-            "Not as it stands, but nearly all of the difference is the size of its cells: count "
-            "that, and the two agree."
+            "Not as it stands. Nearly all of the difference between the rolling layers comes from "
+            "the size of the automaton’s cells."
         )
     return "No: at the paper’s parameters it differs, and its cells do not explain all of it."
 
@@ -258,9 +258,9 @@ def answers(found: Headline) -> list[Answer]:
 def _rule(found: Headline) -> str:
     most = max(found.diffusion, key=lambda row: row.acting / row.D)
     return (
-        "It is the simplest, first-order scheme of BCRE. Its cells, of length d, do physics of "
-        "their own: they add v d/2 to the diffusion D of the rolling sand (v is its speed) and "
-        "smooth the surface by γ d/2 (γ is the rate at which the layers exchange sand). In "
+        "The rule is a first-order upwind scheme of BCRE. Its cells, of length d, add v d/2 to the "
+        "diffusion D of the rolling sand, which moves at speed v. They also smooth the surface by "
+        "γ d/2, where γ is the rate of exchange between the layers. In "
         f"{figure_name(most.figure)}, D = {number(most.D)} acts as {number(most.acting)}."
     )
 
@@ -274,8 +274,8 @@ def _change(found: Headline) -> str:
     shares = list(dict.fromkeys(percent(gap.left) for gap in judged))
     left = f"{shares[0]} is left in each" if len(shares) == 1 else f"{listed(shares)} are left"
     text = (
-        f"At the paper’s parameters the rolling layers differ by {apart}. Give BCRE what the cells "
-        f"add, and {left}."
+        f"At the paper’s parameters the rolling layers differ by {apart}. With both terms added to "
+        f"BCRE, {left}."
     )
     if unjudged:
         text += f" {listed(unjudged).capitalize()} cannot be judged: BCRE is unresolved there."
@@ -294,7 +294,7 @@ def _critical(found: Headline) -> str:
     finer = f"; cells a quarter as long give {fixed(slopes.finer)}" if nearer else ""
     return (
         lead + f"{fixed(slopes.automaton)} above the repose slope Sc in the automaton and "
-        f"{fixed(slopes.bcre)} in BCRE{finer}. In between the two disagree."
+        f"{fixed(slopes.bcre)} in BCRE{finer}. Between these slopes the two disagree."
     )
 
 
@@ -302,17 +302,17 @@ def _pulse(found: Headline) -> str:
     pulses = found.pulses
     start, end = pulses.most_steepened
     text = (
-        f"Of {pulses.cases} slopes above repose one pulse brought {pulses.came_down} down to it "
-        f"(in BCRE {pulses.came_down_bcre}), where the avalanche climbs to the top."
+        f"In {pulses.cases} runs on slopes above repose, one pulse brought {pulses.came_down} down "
+        f"to repose ({pulses.came_down_bcre} in BCRE): those where the avalanche reached the top."
     )
     if pulses.steeper:
         text += (
-            f" It left {pulses.steeper} steeper, at most from {fixed(start)} to {fixed(end)} above "
-            "repose."
+            f" In {pulses.steeper} the slope became steeper, at most from {fixed(start)} to "
+            f"{fixed(end)} above repose."
         )
     if pulses.below:
         return text + f" {pulses.below} ended below repose."
-    return text + " None ended below repose, as the paper says it would."
+    return text + " None ended below repose, although the paper says that they do."
 
 
 def _speed(found: Headline) -> str:
@@ -320,21 +320,21 @@ def _speed(found: Headline) -> str:
     parts: list[str] = []
     if coarse.won:
         parts.append(
-            f"Where an error of {percent(coarse.error)} will do: by {span(coarse.by)} times, in "
-            f"{coarse.won} of {coarse.scenes} scenes."
+            f"Where an error of {percent(coarse.error)} is enough, the automaton is faster in "
+            f"{coarse.won} of {coarse.scenes} scenes, by a factor of {span(coarse.by)}."
         )
     finite = [value for value in fine.lost_by if math.isfinite(value)]
     if finite:
         parts.append(
-            f"At {percent(fine.error)} BCRE’s solver wins {len(fine.lost_by)} of {fine.scenes}, by "
-            f"{number(min(finite), 2)} times or more."
+            f"At {percent(fine.error)} BCRE’s solver is faster in {len(fine.lost_by)} of "
+            f"{fine.scenes}, by a factor of {number(min(finite), 2)} or more."
         )
     elif fine.won == fine.scenes:
-        parts.append(f"At {percent(fine.error)} it still is, in all {fine.scenes}.")
+        parts.append(f"At {percent(fine.error)} it is faster in all {fine.scenes}.")
     if fine.better_won:
         parts.append(
-            f"With a corrected step the automaton wins {fine.better_won} of {fine.scenes} even "
-            "there."
+            "With a calibrated or a flux-limited step the automaton is the faster in "
+            f"{fine.better_won} of {fine.scenes} there too."
         )
     return " ".join(parts) or "Nowhere: BCRE’s solver is the faster at every error asked for."
 
@@ -349,23 +349,23 @@ def certainty(found: Headline) -> list[Answer]:
         facts.append(
             Answer(
                 f"± {percent(max(worst, LEAST))}",
-                "is BCRE’s own error in those differences, or less; where it is not small, the "
-                "verdict is “unresolved”",
+                "at most is BCRE’s own numerical error in these differences; where it is not "
+                "small, the verdict is “unresolved”",
             )
         )
     facts += [
         Answer(
             f"± {percent(max(found.slopes.theory_gap, LEAST))}",
-            "is the most by which a measured Sd misses its closed form, in either model",
+            "at most separates a measured Sd from its closed form, in either model",
         ),
         Answer(
             f"{fixed(automaton, 1)} and {fixed(bcre, 1)}",
-            "are the orders at which automaton and BCRE converge to exact solutions",
+            "are the orders at which the automaton and BCRE’s solver converge to exact solutions",
         ),
         Answer(
             number(found.mass_error, 1),
-            "of the sand, at most, is lost or made in any run that ends, one of ten million steps "
-            "among them",
+            "of the sand at most is lost or created in any hard case that runs to its end, ten "
+            "million steps included",
         ),
     ]
     return facts

@@ -72,6 +72,8 @@ def _atom(tokens: list[str]) -> str:
         return f"<mn>{token}</mn>"
     if token[0].isalpha() or token == "∂":
         return _word(token, tokens) if _is_word(token) else _name(token)
+    if token == "|":
+        return '<mo stretchy="false" lspace="0" rspace="0">|</mo>'
     return f"<mo>{escape(SIGNS.get(token, token))}</mo>"
 
 
@@ -81,9 +83,10 @@ def _is_word(token: str) -> bool:
 
 
 def _word(token: str, rest: list[str]) -> str:
-    """With a space on either side, but none before what encloses or ends it."""
+    """With a space on either side, but none before what encloses or ends it, or another word."""
     space = "\N{NO-BREAK SPACE}"
-    after = "" if not rest or rest[0] in (":", "(", ")", ",") else space
+    closed = not rest or rest[0] in (":", "(", ")", ",") or _is_word(rest[0])
+    after = "" if closed else space
     return f"<mtext>{space}{token}{after}</mtext>"
 
 
@@ -92,6 +95,8 @@ def _name(token: str) -> str:
         return f"<mi>{GREEK[token]}</mi>"
     if token in UPRIGHT:
         return f'<mi mathvariant="normal">{token}</mi>'
+    if re.fullmatch("d[a-z]", token):  # a step or a difference: two letters, not one name
+        return f'<mspace width="0.17em"/><mi>d</mi><mi>{token[1]}</mi>'
     index = re.fullmatch(r"([A-Z])([a-z0-9])", token)
     if index:
         letter, low = index.groups()

@@ -46,7 +46,15 @@ function startPlayer(root) {
     scrub.max = scene.t.length - 1;
     find("title").textContent = scene.title;
     frame = 0;
+    find("relative").checked = hardlyMoves();
     draw();
+  }
+
+  // Where the surface changes by less than a tenth of its height, only the change can be seen.
+  function hardlyMoves() {
+    const low = scene.range[0], high = scene.range[1];
+    const most = Math.max(...scene.models.ca.change(scene.t.length - 1).map(Math.abs));
+    return most < 0.1 * (high - low);
   }
 
   function stop() {
