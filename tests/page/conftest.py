@@ -18,6 +18,14 @@ OPTIONS = (
     "--disable-sync",
 )
 
+SCROLL = """async () => {
+    document.querySelectorAll("details").forEach((part) => { part.open = true; });
+    for (let y = 0; y < document.body.scrollHeight; y += 2000) {
+        window.scrollTo({ top: y, behavior: "instant" });
+        await new Promise((done) => requestAnimationFrame(done));
+    }
+}"""
+
 
 @pytest.fixture(scope="session")
 def browser():
@@ -32,27 +40,52 @@ def browser():
         chromium.close()
 
 
+def opened(browser, name, width=1280, height=800, scrolled=False, **options):
+    """A page of the reports that notes what it complains of and asks for.
+
+    Scrolled through, whatever starts when it comes near the screen has started.
+    """
+    context = browser.new_context(viewport={"width": width, "height": height}, **options)
+    page = context.new_page()
+    page.complaints, page.asked_for = [], []
+    page.on(
+        "console",
+        lambda note: (
+            page.complaints.append(note.text) if note.type in ("error", "warning") else None
+        ),
+    )
+    page.on("pageerror", lambda error: page.complaints.append(str(error)))
+    page.on("request", lambda request: page.asked_for.append(request.url))
+    page.goto((REPORTS / name).as_uri())
+    if scrolled:
+        page.evaluate(SCROLL)
+    return page
+
+
 @pytest.fixture
 def open_page(browser):
-    """Opens a page of the reports and notes what it complains of and asks for."""
-    contexts = []
+    """Opens a page that a test may change."""
+    pages = []
 
-    def open_page(name="index.html", width=1280, height=800, **options):
-        context = browser.new_context(viewport={"width": width, "height": height}, **options)
-        contexts.append(context)
-        page = context.new_page()
-        page.complaints, page.asked_for = [], []
-        page.on(
-            "console",
-            lambda note: (
-                page.complaints.append(note.text) if note.type in ("error", "warning") else None
-            ),
-        )
-        page.on("pageerror", lambda error: page.complaints.append(str(error)))
-        page.on("request", lambda request: page.asked_for.append(request.url))
-        page.goto((REPORTS / name).as_uri())
-        return page
+    def open_page(name="index.html", **options):
+        pages.append(opened(browser, name, **options))
+        return pages[-1]
 
     yield open_page
-    for context in contexts:
-        context.close()
+    for page in pages:
+        page.context.close()
+
+
+@pytest.fixture(scope="session")
+def shown(browser):
+    """A page that was scrolled through; opened once for all tests that only look at it."""
+    pages = {}
+
+    def shown(name="index.html"):
+        if name not in pages:
+            pages[name] = opened(browser, name, scrolled=True)
+        return pages[name]
+
+    yield shown
+    for page in pages.values():
+        page.context.close()

@@ -52,8 +52,12 @@ def as_json(value: Any) -> Markup:
 
 
 def maths(text: str) -> Markup:
-    """Plain text as HTML in which D_eff, Sc, Sd and S0 have their indices and gamma is a letter."""
-    safe = str(escape(text))
+    """Plain text as HTML in which D_eff, Sc, Sd and S0 have their indices and gamma is a letter.
+
+    A scene called figure1 becomes the paper's figure 1, and products do not break across lines.
+    """
+    safe = re.sub(r"\bfigure(\d)\b", r"figure \1", str(escape(text)))
+    safe = re.sub(r"\b(v|γ|gamma) (d/2)", "\\1\N{NO-BREAK SPACE}\\2", safe)
     safe = re.sub(r"\b(\w+)_(eff)\b", r"\1<sub>\2</sub>", safe)
     safe = re.sub(r"\bS([cd0])\b", r"S<sub>\1</sub>", safe)
     for name, letter in (("gamma", "γ"), ("kappa", "κ"), ("sigma", "σ")):

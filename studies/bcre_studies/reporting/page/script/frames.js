@@ -20,6 +20,7 @@ function readScene(name) {
   const scene = JSON.parse(document.getElementById(`frames-${name}`).textContent);
   for (const model of Object.values(scene.models)) {
     const start = unpacked(model.start, scene.cells)(0);
+    model.changed = [Math.min(0, ...model.change.low), Math.max(1e-9, ...model.change.high)];
     model.change = unpacked(model.change, scene.cells);
     model.u = (frame) => model.change(frame).map((change, i) => start[i] + change);
     model.R = unpacked(model.R, scene.cells);

@@ -20,9 +20,10 @@ function startPlayer(root) {
     const most = Math.max(1e-9, ...R.map((line) => Math.max(...line.values)));
     const relative = find("relative").checked;
     const surface = lines(relative ? "change" : "u");
-    const changes = surface.flatMap((line) => [Math.min(...line.values), Math.max(...line.values)]);
     drawChart(find("u"), { lines: surface, length: scene.length, unit: "x, downhill",
-      range: relative ? niceRange(Math.min(0, ...changes), Math.max(1e-9, ...changes)) : scene.range });
+      range: relative ? scene.changed : scene.range });
+    find("surface").hidden = relative;
+    find("surface-change").hidden = !relative;
     drawChart(find("R"), { lines: R, length: scene.length, range: niceRange(0, most),
       unit: "x, downhill" });
     scrub.value = frame;
@@ -40,8 +41,11 @@ function startPlayer(root) {
   function show(name) {
     scene = scenes[name] || (scenes[name] = readScene(name));
     if (!scene.range) {
-      const ends = Object.values(scene.models).map((m) => m.ends);
-      scene.range = niceRange(Math.min(...ends.map((e) => e[0])), Math.max(...ends.map((e) => e[1])));
+      const around = (ends) => niceRange(
+        Math.min(...ends.map((end) => end[0])), Math.max(...ends.map((end) => end[1])));
+      const models = Object.values(scene.models);
+      scene.range = around(models.map((model) => model.ends));
+      scene.changed = around(models.map((model) => model.changed));
     }
     scrub.max = scene.t.length - 1;
     find("title").textContent = scene.title;
@@ -52,9 +56,7 @@ function startPlayer(root) {
 
   // Where the surface changes by less than a tenth of its height, only the change can be seen.
   function hardlyMoves() {
-    const low = scene.range[0], high = scene.range[1];
-    const most = Math.max(...scene.models.ca.change(scene.t.length - 1).map(Math.abs));
-    return most < 0.1 * (high - low);
+    return scene.changed[1] - scene.changed[0] < 0.1 * (scene.range[1] - scene.range[0]);
   }
 
   function stop() {
