@@ -16,10 +16,9 @@ from bcre_studies.reporting.page.mathml import formula
 from bcre_studies.system.files import ROOT
 
 REPORTS = ROOT / "reports"
-EFFECTIVE = next(verdict for verdict in Verdict if verdict.name.startswith(("AGREE_", "EXPL")))
 
 
-def profiles(difference=0.5, left=0.01, verdict=EFFECTIVE):
+def profiles(difference=0.5, left=0.01, verdict=Verdict.EXPLAINED):
     row = {"quantity": "R(x) at the end", "d": 1.0, "difference": difference}
     row |= {"difference_effective": left, "difference_error": 1e-6, "verdict": str(verdict)}
     unresolved = row | {"case": "figure1", "verdict": str(Verdict.UNRESOLVED)}
@@ -227,7 +226,7 @@ def claim(name, verdict):
 def test_what_decides_is_the_first_claim_that_does_not_agree():
     tables = {"uphill_propagation": committed("uphill_propagation")}
     wave = ("uphill_propagation", claim("surface wave", Verdict.AGREE))
-    front = ("uphill_propagation", claim("rolling front", EFFECTIVE))
+    front = ("uphill_propagation", claim("rolling front", Verdict.EXPLAINED))
     assert deciding_number([wave, front], tables).startswith("front")
     assert deciding_number([wave], tables).startswith("speed of the surface wave")
     unknown = [("new", claim("a", Verdict.AGREE)), ("new", claim("b", Verdict.DISAGREE))]

@@ -208,6 +208,7 @@ def content(**changes):
         "provenance": [(ATTACK, ATTACK)],
         "files": [],
         "claims": [("view", claim())],
+        "quality_studies": [study],
         "tables": [{"id": "t", "title": ATTACK, "lead": ATTACK, "table": table, "file": "a.csv"}],
     } | changes
 

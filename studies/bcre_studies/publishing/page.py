@@ -25,8 +25,8 @@ from bcre_studies.publishing.store import Tables
 from bcre_studies.publishing.study_views import (
     SIGNS,
     groups,
-    is_quality,
     mark_of,
+    quality_studies,
     quality_tables,
 )
 from bcre_studies.publishing.wording import figure_name
@@ -138,8 +138,9 @@ def page_content(
             (finding.name, claim)
             for finding in findings
             for claim in finding.claims
-            if is_quality(finding.name, claim)
+            if claim.quality
         ],
+        "quality_studies": quality_studies(findings, folder),
         "tables": quality_tables(tables, folder),
     }
 
@@ -156,6 +157,7 @@ def _of_page(name: str, content: Mapping[str, Any]) -> dict[str, Any]:
             ("index.html", "Report"),
             ("#ours", "Claims"),
             *((f"#{view['id']}", view["title"]) for view in views),
+            ("#studies", "Studies"),
         ),
     }
 

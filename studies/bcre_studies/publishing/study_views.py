@@ -22,21 +22,12 @@ MARKS = {
     "agree": "full",
     "reproduced": "full",
     "explained by cell size": "half",
-    "agree once the automaton's own diffusion is counted": "half",
     "reproduced under conditions": "half",
     "disagree": "cross",
     "not reproduced": "cross",
 }
 """The shape that stands with a verdict; a word without an entry gets the open one."""
 SIGNS = {"full": "●", "half": "◐", "cross": "✕", "open": "?"}
-QUALITY_STUDIES = ("scene_needs", "advice")
-QUALITY = {
-    ("scaling", "ratios"),
-    ("hard_cases", "finite"),
-    ("hard_cases", "each failing model says where"),
-    ("hard_cases", "faults"),
-}
-"""Studies and claims that are about the code and not about sand."""
 GROUPS = {
     "validation": (
         "What sand does",
@@ -60,14 +51,22 @@ def mark_of(verdict: str) -> str:
     return MARKS.get(str(verdict), "open")
 
 
-def is_quality(name: str, claim: Claim) -> bool:
-    """Whether a claim is about the code, so that it stands on the page of quality checks."""
-    return name in QUALITY_STUDIES or (name, claim.name) in QUALITY
+def is_quality(finding: Finding) -> bool:
+    """Whether all that a study claims is about the code, so that it leaves the report's page."""
+    return bool(finding.claims) and all(claim.quality for claim in finding.claims)
+
+
+def quality_studies(findings: Sequence[Finding], folder: Path) -> list[dict[str, Any]]:
+    """The studies of the page of quality checks."""
+    return [_study_view(finding, folder) for finding in findings if is_quality(finding)]
 
 
 def groups(findings: Sequence[Finding], folder: Path) -> list[dict[str, Any]]:
+    """The studies of the report's page, by the rooms in which they stand."""
     rooms: dict[str, list[dict[str, Any]]] = {}
     for finding in findings:
+        if is_quality(finding):
+            continue
         entry = STUDIES.get(finding.name)
         room = entry.module.partition(".")[0] if entry else "validation"
         rooms.setdefault(room, []).append(_study_view(finding, folder))
@@ -84,7 +83,7 @@ def groups(findings: Sequence[Finding], folder: Path) -> list[dict[str, Any]]:
 
 def _study_view(finding: Finding, folder: Path) -> dict[str, Any]:
     story = story_of(finding.name, finding.text)
-    claims = [claim for claim in finding.claims if not is_quality(finding.name, claim)]
+    claims = [claim for claim in finding.claims if not claim.quality]
     return {
         "name": finding.name,
         "title": finding.title,
@@ -94,7 +93,7 @@ def _study_view(finding: Finding, folder: Path) -> dict[str, Any]:
         "picture": finding.picture,
         "sentences": list(story.tell(finding.tables)),
         "claims": claims,
-        "tally": _tally(finding.claims),
+        "tally": _tally(claims),
         "table": table_view(f"Numbers of {finding.name}", finding.tables["comparison"]),
         "files": sorted(
             path.relative_to(folder).as_posix() for path in (folder / finding.name).glob("*.csv")
@@ -137,19 +136,18 @@ def quality_tables(tables: Mapping[str, Tables], folder: Path) -> list[dict[str,
                 "file": "scaling/comparison.csv",
             }
         )
-    faults = next((path for path in FAULTS if (folder / path).is_file()), None)
-    if faults is not None:
+    if (folder / FAULTS).is_file():
         views.append(
             {
                 "id": "faults",
                 "title": "Faults made on purpose",
                 "lead": "Broken scene files, killed runs, full disks and the like: what was done, "
                 "what came of it, and what should.",
-                "table": table_view("Faults", pd.read_csv(folder / faults, keep_default_na=False)),
-                "file": faults,
+                "table": table_view("Faults", pd.read_csv(folder / FAULTS, keep_default_na=False)),
+                "file": FAULTS,
             }
         )
     return views
 
 
-FAULTS = ("quality/faults.csv", "hard_cases/faults.csv")
+FAULTS = "quality/faults.csv"
