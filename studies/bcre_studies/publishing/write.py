@@ -56,8 +56,7 @@ def write_index(findings: Sequence[Finding]) -> None:
     """Record the verdicts, write the paper's claims with their evidence, and the pages."""
     for path, quality in zip(_verdict_files(), (False, True), strict=True):
         table = verdict_table(findings, quality)
-        replace_text(path, table.to_csv(index=False, lineterminator="
-"))
+        replace_text(path, table.to_csv(index=False, lineterminator="\n"))
     decided = decide(findings)
     replace_text(REPORTS / "claims.md", render("claims.md.j2", paper_claims=decided))
     write_pages(findings, decided, REPORTS)
