@@ -211,7 +211,7 @@ def test_stored_result_is_for_the_sources_and_libraries_that_made_it(tmp_path, m
         return keys[-1] != keys[-2]
 
     for name in (
-        "bcre_ca/step.py",
+        "bcre_ca/line/step.py",
         "bcre_pde/fluxes.py",
         "bcre_studies/printed_rule.py",
         "bcre_studies/measuring/observe.py",

@@ -20,7 +20,6 @@ import numpy as np
 
 import bcre_ca
 import bcre_pde
-from bcre_ca import kernels
 from bcre_pde import fluxes
 from bcre_pde.explicit import ExplicitMethod, tableau, weighted_sum
 from bcre_studies.scenes.domain import Array
@@ -57,7 +56,7 @@ def automaton_grows(numbers: Numbers, variant: Variant) -> bool:
     h, R = u.copy(), steady + disturbance
 
     def deviation() -> float:
-        kernels.march(h, R, rule, STEPS // 2, "periodic")
+        bcre_ca.march(h, R, rule, STEPS // 2, "periodic")
         return _largest(h, R - steady)
 
     with np.errstate(all="ignore"):
@@ -71,7 +70,7 @@ def _steady_layer(rule: bcre_ca.Rule, cells: int) -> Array:
     between two sweeps, or one less: f = c/(1 - q) downhill, c/(1 - b) uphill.
     """
     folded = rule.coefficients()
-    c, b, q = folded.c, folded.b or 0.0, folded.q
+    c, b, q = folded.courant, folded.diffusion or 0.0, folded.outgoing
     layer = np.ones(cells)
     if rule.order == "right" and q < 1:
         layer[0] += c / (1 - q)
