@@ -6,46 +6,44 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pde import FieldCollection
 from pde.solvers import RungeKuttaSolver
 
-from bcre_pde.equation import BCRE
-from bcre_pde.explicit import FEHLBERG, FEHLBERG_ERROR, Step, weighted_sum
-
-Array = NDArray[np.float64]
+from bcre_pde.explicit import FEHLBERG, FEHLBERG_ERROR, Step
+from bcre_pde.marched import Marched
+from bcre_pde.problem import Array
 
 
 def layer_scale(R: Array) -> float:
-    """Largest |R|, or 1 where there is no layer at all: what errors in it are measured by."""
+    """Largest |R|, or 1 where there is no layer at all: what errors are relative to."""
     return float(np.abs(R).max()) or 1.0
 
 
 class BoundedRungeKutta(RungeKuttaSolver):  # type: ignore[misc]
-    """py-pde's adaptive Runge-Kutta-Fehlberg solver with the four things that this equation needs.
+    """py-pde's adaptive Runge-Kutta-Fehlberg solver with four changes.
 
-    Its error is relative to the largest rolling layer of the moment, which may grow from 1e-150;
-    its step never passes ``dt_max``: without that it would grow fourfold wherever nothing
-    happens, until rounding errors have been amplified to the size of the tolerance; it gives
-    up below ``dt_min``, since py-pde's 1e-10 would be a long step where times are short; and its
-    stages are those of :class:`bcre_pde.explicit.Step`, the same numbers in less time.
+    * Its error is relative to the largest rolling layer of the moment, which may grow from 1e-150.
+    * Its step never exceeds ``dt_max``. Otherwise the step would grow fourfold wherever nothing
+      happens, until rounding errors have been amplified to the size of the tolerance.
+    * It gives up below ``dt_min``: py-pde's 1e-10 would be a long step where times are short.
+    * Its stages are those of :class:`bcre_pde.explicit.Step`: the same numbers in less time.
     """
 
     name = "bounded runge-kutta"
 
-    def __init__(self, pde: BCRE, *, dt_max: float, dt_min: float, **options: Any) -> None:
+    def __init__(self, pde: Marched, *, dt_max: float, dt_min: float, **options: Any) -> None:
         super().__init__(pde, adaptive=True, **options)
         self.dt_max = dt_max
         self.dt_min = dt_min
 
     def _make_single_step_error_estimate(self, state: FieldCollection) -> Callable[..., Any]:
         step = Step(self.pde, FEHLBERG)
-        new, error, nothing = (np.empty_like(state.data) for _ in range(3))
-        nothing[...] = 0.0
+        new, error, nothing = (np.zeros_like(state.data) for _ in range(3))
+        add = self.pde.weighted_sum
 
         def relative_single_step(data: Array, t: float, dt: float) -> tuple[Array, float]:
             step(data, t, dt, new)
-            weighted_sum(nothing, step.increments, FEHLBERG_ERROR, FEHLBERG_ERROR.size, 1.0, error)
+            add(nothing, step.increments, FEHLBERG_ERROR, FEHLBERG_ERROR.size, 1.0, error)
             return new, float(np.abs(error, out=error).max()) / layer_scale(new[1])
 
         return relative_single_step

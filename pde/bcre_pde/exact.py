@@ -17,13 +17,11 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import elementwise
 
-from bcre_pde.equation import Material
-from bcre_pde.solve import Ends, Problem
+from bcre_pde.material import Material
+from bcre_pde.problem import Array, Ends, Problem
 
-Array = NDArray[np.float64]
 Profile = Callable[[Array], Array]
 
 

@@ -6,90 +6,23 @@ import itertools
 import math
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
-from numpy.typing import NDArray
-from pde import CartesianGrid, FieldCollection
 
-from bcre_pde.advance import Method as Method  # re-exported
-from bcre_pde.advance import advance
-from bcre_pde.equation import BCRE, Material
-from bcre_pde.fluxes import SMALLEST_GRID
+from bcre_pde.problem import SMALLEST_GRID, Array, Method, Problem, Solution
 
-Array = NDArray[np.float64]
-Ends = Literal["open", "periodic"]
+if TYPE_CHECKING:
+    from pde import CartesianGrid, FieldCollection
+
+    from bcre_pde.line.marched import MarchedOnLine
+
 
 TOLERANCE = 1e-6
 """Default local error per step, relative to the largest rolling layer."""
 
-
 MOST_EVALUATIONS = 10**8
 """How often one solve may evaluate the right-hand side before it is taken to be endless."""
-
-
-@dataclass(frozen=True)
-class Problem:
-    """An initial value problem for BCRE.
-
-    Parameters
-    ----------
-    initial: function of positions x, shape (N,), that returns h and R there, lengths.
-    material: the coefficients.
-    length: the domain is 0 <= x <= length, x running downhill; finite, > 0.
-    ends: ``"open"`` (closed top, open foot) or ``"periodic"`` (in h + Sc x and R).
-
-    Raises
-    ------
-    ValueError
-        naming the parameter, its value and what is allowed.
-    """
-
-    initial: Callable[[Array], tuple[Array, Array]]
-    material: Material
-    length: float
-    ends: Ends = "open"
-
-    def __post_init__(self) -> None:
-        if not (math.isfinite(self.length) and self.length > 0):
-            raise ValueError(f"length = {self.length!r}: must be a finite number > 0")
-        if self.ends not in get_args(Ends):
-            raise ValueError(f"ends = {self.ends!r}: must be one of {get_args(Ends)}")
-
-
-@dataclass(frozen=True)
-class Solution:
-    """Layers at the cell centres ``x`` (N,) and times ``t`` (T,): ``h``, ``R`` of shape (T, N).
-
-    ``outflow`` (T,) is the area that has left through the foot, so that
-    ``dx sum(h + R) + outflow`` does not change; ``evaluations`` counts right-hand sides.
-    """
-
-    problem: Problem
-    x: Array
-    t: Array
-    h: Array
-    R: Array
-    outflow: Array
-    steps: int
-    evaluations: int
-    wall_s: float
-
-    @property
-    def dx(self) -> float:
-        """Cell length."""
-        return self.problem.length / self.x.size
-
-    @property
-    def u(self) -> Array:
-        """Height above the repose line, h + Sc x, shape (T, N)."""
-        return self.h + self.problem.material.Sc * self.x
-
-    def mass(self) -> Array:
-        """Area of sand in the domain at every time, shape (T,)."""
-        rows = zip(self.h, self.R, strict=True)
-        return np.array([self.dx * (math.fsum(h) + math.fsum(R)) for h, R in rows])
 
 
 def solve(
@@ -99,8 +32,11 @@ def solve(
     method: Method = "runge-kutta",
     tolerance: float = TOLERANCE,
     stop: Callable[[Solution], bool] | None = None,
+    equation: type[MarchedOnLine] | None = None,
 ) -> Solution:
     """Solve BCRE up to the last of the ascending ``times``.
+
+    py-pde and the compiled code are imported at the first call.
 
     Parameters
     ----------
@@ -113,6 +49,7 @@ def solve(
         solvers, to each value).
     stop: asked after every recorded time with a solution of the first and the latest frame; True
         ends the solve there.
+    equation: another model on a line (see :mod:`bcre_pde.equation`); left out, BCRE.
 
     Raises
     ------
@@ -127,20 +64,23 @@ def solve(
         raise ValueError(f"tolerance = {tolerance!r}: must lie between 0 and 1")
     if cells < SMALLEST_GRID:
         raise ValueError(f"cells = {cells!r}: must be at least {SMALLEST_GRID}")
-    periodic = problem.ends == "periodic"
-    grid = CartesianGrid([[0.0, problem.length]], cells, periodic=periodic)
-    equation = BCRE(problem.material, grid, MOST_EVALUATIONS)
-    state = _initial_state(problem, grid)
+    from bcre_pde.advance import advance
+    from bcre_pde.equation import BCRE
+
+    model = BCRE if equation is None else equation
+    grid = model.grid(problem.length, cells, problem.ends)
+    marched = model(problem.material, grid, MOST_EVALUATIONS)
+    state = _initial_state(problem, marched, grid)
     record = _Recorder(problem, grid)
-    equation.evolution_rate(state)  # compiles, so that the clock sees the solve alone
+    marched.evolution_rate(state)  # compiles, so that the clock sees the solve alone
     began = time.perf_counter()
     now = 0.0
     for then in times:
         if then > now:
-            counted = equation.evaluations
-            state, steps = advance(equation, state, (now, then), method, tolerance)
+            counted = marched.evaluations
+            state, steps = advance(marched, state, (now, then), method, tolerance)
             record.steps += steps
-            record.evaluations += equation.evaluations - counted
+            record.evaluations += marched.evaluations - counted
             now = then
         record.add(state, then, time.perf_counter() - began)
         if stop is not None and stop(record.solution(ends_only=True)):
@@ -180,14 +120,16 @@ class _Recorder:
         )
 
 
-def _initial_state(problem: Problem, grid: CartesianGrid) -> FieldCollection:
+def _initial_state(
+    problem: Problem, equation: MarchedOnLine, grid: CartesianGrid
+) -> FieldCollection:
     x = grid.cell_coords[:, 0]
     h, R = problem.initial(x)
     h_foot, _ = problem.initial(np.array([problem.length]))
     Sc = problem.material.Sc
     if not (np.isfinite(h).all() and np.isfinite(R).all()):
         raise ValueError("the initial h and R must be finite")
-    return BCRE.state(grid, h + Sc * x, R, float(h_foot[0]) + Sc * problem.length)
+    return equation.state(grid, h + Sc * x, R, float(h_foot[0]) + Sc * problem.length)
 
 
 def _ascending(times: Sequence[float]) -> list[float]:

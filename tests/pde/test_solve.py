@@ -3,7 +3,8 @@ import math
 import numpy as np
 import pytest
 
-from bcre_pde import Material, Problem, fluxes, solve
+from bcre_pde import Material, Problem, solve
+from bcre_pde.line import fluxes
 
 METHODS = ["runge-kutta", "RK45", "DOP853", "LSODA", "BDF"]
 MATERIAL = Material(v=1.0, D=0.2, gamma=0.3, Sc=0.5, kappa=0.05)

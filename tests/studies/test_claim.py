@@ -2,7 +2,8 @@ import math
 
 import pytest
 
-from bcre_studies.comparison.claim import Claim, Verdict, verdict_of, within, worst
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.verdict import Verdict, verdict_of, within, worst
 
 
 def test_verdicts_are_the_four_words_of_the_reports():

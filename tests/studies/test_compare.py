@@ -6,22 +6,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import bcre_pde
-from bcre_studies.comparison.claim import Verdict
-from bcre_studies.comparison.compare import (
-    Comparison,
-    compare,
-    relative_difference,
-    relative_error,
-    sample,
-    significant,
-    to_error,
-)
+from bcre_studies.comparison.compare import Comparison, compare
+from bcre_studies.comparison.difference import relative_difference, sample
+from bcre_studies.comparison.error import relative_error
+from bcre_studies.comparison.rounding import significant, to_error
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.simulate import as_run, problem_of, run_automaton
 from bcre_studies.scenes.scene import load
 
 
 def refined(value, error, allowed):
-    return bcre_pde.Refined(None, value, (100, 200, 400), 2.0, error, allowed)
+    return bcre_pde.Measured(value, error, 2.0, allowed, (100, 200, 400))
 
 
 def test_relative_difference_of_profiles_is_that_of_their_areas():
@@ -125,7 +120,7 @@ def test_figures_2_and_3_differ_by_the_automatons_own_diffusion(name, nominal, e
     assert found.difference == pytest.approx(nominal, rel=0.1)
     assert found.difference_effective == pytest.approx(effective, rel=0.1)
     assert found.verdict is Verdict.AGREE_EFFECTIVE
-    assert found.pde.error <= 0.1 * found.difference * np.mean(np.abs(found.pde.measured))
+    assert found.pde.error <= 0.1 * found.difference * np.mean(np.abs(found.pde.value))
 
 
 def test_solution_that_no_grid_settles_is_unresolved():

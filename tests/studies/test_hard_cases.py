@@ -6,7 +6,7 @@ import pytest
 
 import bcre_ca
 import bcre_pde
-from bcre_studies.comparison.claim import Verdict
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.verification.hard_cases import adaptive_step, scarp_grids
 from bcre_studies.verification.hard_cases import study as study
 from bcre_studies.verification.hard_cases.study import FAILS, REFUSED, SURVIVES, Case

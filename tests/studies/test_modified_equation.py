@@ -4,8 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bcre_studies.comparison.claim import Verdict
-from bcre_studies.comparison.compare import compare, sample
+from bcre_studies.comparison.compare import compare
+from bcre_studies.comparison.difference import sample
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.scenes.scene import load
 from bcre_studies.verification import modified_equation as study
 

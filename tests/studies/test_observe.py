@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import bcre_pde
-from bcre_studies.comparison import scaled
-from bcre_studies.comparison.claim import Verdict
+from bcre_studies.comparison.compare import Comparison, compare_each
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.simulate import Run
 from bcre_studies.observables import fronts as observe
 from bcre_studies.scenes.scene import load
@@ -95,9 +95,9 @@ def test_roughness_of_a_sine_is_its_amplitude_over_root_two():
 
 def comparison(automaton, pde, effective, scale, error=0.0):
     nominal, own = (
-        bcre_pde.Refined(None, value, (8, 16, 32), 5.0, error, 1e-3) for value in (pde, effective)
+        bcre_pde.Measured(value, error, cells=(8, 16, 32)) for value in (pde, effective)
     )
-    return scaled.ScaledComparison(automaton, nominal, own, 0.05, scale)
+    return Comparison(automaton, nominal, own, 0.05, scale)
 
 
 def test_a_rate_that_is_zero_in_the_pde_is_judged_by_the_scale():
@@ -115,7 +115,7 @@ def test_an_error_that_is_too_large_leaves_the_comparison_unresolved():
 
 def test_each_number_is_compared_by_itself():
     scene = load("figure3").with_changes(until=1.0)
-    mass, foot = scaled.compare_each(
+    mass, foot = compare_each(
         scene,
         [1.0],
         lambda run: [run.mass()[-1], run.R[-1].max()],

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bcre_studies.comparison.claim import Verdict
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.height_only import SETTLED, settle
 from bcre_studies.observables.outcome import slope
 from bcre_studies.validation import one_variable as study

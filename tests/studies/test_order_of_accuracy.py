@@ -8,7 +8,7 @@ import pytest
 
 import bcre_ca
 from bcre_pde import exact
-from bcre_studies.comparison.claim import Verdict
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.verification import order_of_accuracy as study
 
 SOLUTIONS = {

@@ -4,14 +4,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bcre_studies.comparison.claim import Verdict
-from bcre_studies.comparison.compare import (
-    SHARE,
-    refine,
-    relative_difference,
-    relative_error,
-    sample,
-)
+from bcre_studies.comparison.compare import refine
+from bcre_studies.comparison.difference import relative_difference, sample
+from bcre_studies.comparison.error import SHARE, relative_error
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.simulate import effective_problem_of, rule_of, run_automaton
 from bcre_studies.scenes.scene import load
 from bcre_studies.validation import paper_figures
@@ -67,7 +63,7 @@ def test_difference_of_figure_1_in_mid_climb_is_both_effective_coefficients(refi
         coarsest=200 if refinement == 4 else 100,
         finest=800,
     )
-    difference = relative_difference(automaton, refined.measured)
+    difference = relative_difference(automaton, refined.value)
     assert refined.resolved
     assert relative_error(refined) <= SHARE * max(difference, TOLERANCE)
     assert near(difference, FIGURE_1[refinement], 0.20)

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 import bcre_ca
-from bcre_studies.comparison.claim import Verdict
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.simulate import rule_of
 from bcre_studies.observables.outcome import slope
 from bcre_studies.scenes.scene import load

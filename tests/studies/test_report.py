@@ -18,7 +18,8 @@ import bcre_ca
 import bcre_pde
 import bcre_studies
 from bcre_studies import catalog, cli
-from bcre_studies.comparison.claim import Claim, Verdict
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.publishing import store, write
 from bcre_studies.reporting import style
 from bcre_studies.system import files

@@ -4,7 +4,7 @@ import pandas as pd
 import pytest
 
 import bcre_pde
-from bcre_studies.comparison.claim import Verdict
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.simulate import problem_of, run_automaton
 from bcre_studies.observables.outcome import slope
 from bcre_studies.validation.repose_return import study as repose_return

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import bcre_pde
-from bcre_studies.comparison.claim import Verdict
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.simulate import as_run, problem_of, run_automaton
 from bcre_studies.observables import fronts as observe
 from bcre_studies.scenes.scene import load

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bcre_studies.comparison.claim import Verdict
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.simulate import rule_of, run_automaton
 from bcre_studies.observables import named as observables
 from bcre_studies.performance.scene_needs import ablation, smallest

@@ -5,7 +5,7 @@ import pytest
 
 import bcre_pde
 from bcre_ca.theory import second_critical_excess
-from bcre_studies.comparison.claim import Verdict
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.observables.outcome import Outcome
 from bcre_studies.validation.second_critical_angle import study as second_critical_angle
 from bcre_studies.validation.second_critical_angle.climb import Bracket, climb, threshold

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pandas as pd
 import pytest
 
-from bcre_studies.comparison.claim import Verdict
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.performance import speed_error as study
 from bcre_studies.performance.record import contest
 from bcre_studies.performance.record.record import TARGETS

@@ -9,7 +9,7 @@ import pytest
 import bcre_ca.theory
 import bcre_pde
 import bcre_pde.theory
-from bcre_studies.comparison.claim import Verdict
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.simulate import as_run, effective_problem_of, problem_of, run_automaton
 from bcre_studies.observables import fronts as observe
 from bcre_studies.scenes.scene import load

@@ -16,7 +16,7 @@ from bcre_studies.advisor.options import PRECISE, Option
 from bcre_studies.advisor.pilot import with_model
 from bcre_studies.advisor.question import Question
 from bcre_studies.advisor.scene_text import scene_text
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.rounding import significant
 from bcre_studies.running.run import COARSEST, require_runnable
 from bcre_studies.system.files import replace_text, require_writable
 from bcre_studies.timing.costs import recorded

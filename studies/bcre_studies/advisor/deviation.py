@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from bcre_pde import grid_convergence_index
-from bcre_studies.comparison.compare import sample
+from bcre_studies.comparison.difference import sample
 from bcre_studies.models.simulate import Run
 from bcre_studies.observables import named as observables
 from bcre_studies.observables.named import Record

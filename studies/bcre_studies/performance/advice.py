@@ -28,8 +28,9 @@ from bcre_studies.advisor.candidate import MODELS, SCHEMES
 from bcre_studies.advisor.deviation import deviation, uncertainty
 from bcre_studies.advisor.pilot import run_model
 from bcre_studies.advisor.question import Question
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.simulate import Run, frame_times
 from bcre_studies.performance.random_scenes import random_scene
 from bcre_studies.performance.record.record import read

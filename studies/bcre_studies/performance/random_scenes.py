@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.rounding import significant
 from bcre_studies.scenes.scene import Scene
 
 SEED = 20_261

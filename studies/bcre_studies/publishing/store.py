@@ -16,7 +16,7 @@ from pathlib import Path
 import pandas as pd
 
 from bcre_studies.catalog import STUDIES, study
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.rounding import significant
 from bcre_studies.sweeps import each as work
 from bcre_studies.system import pickles, sources
 from bcre_studies.system.files import (

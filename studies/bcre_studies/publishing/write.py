@@ -11,7 +11,8 @@ import jinja2
 import pandas as pd
 
 from bcre_studies.catalog import STUDIES, study
-from bcre_studies.comparison.claim import Claim, Verdict
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.paper_claims import ENTRIES, Entry
 from bcre_studies.publishing.store import Tables, tables_of
 from bcre_studies.reporting import style

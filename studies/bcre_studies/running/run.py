@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Literal
@@ -16,7 +16,8 @@ from rich.progress import Progress
 
 import bcre_ca
 import bcre_pde
-from bcre_studies.comparison.compare import SHARE, sample
+from bcre_studies.comparison.difference import sample
+from bcre_studies.comparison.error import SHARE
 from bcre_studies.models.simulate import (
     Run,
     as_run,
@@ -205,40 +206,35 @@ def _run_pde(scene: Scene, times: Sequence[float], automaton: Run | None) -> Run
             progress.update(task, description=cells, completed=float(solution.t[-1]))
             return False
 
-        options = {"method": scene.solver.method, "tolerance": scene.solver.tolerance, "stop": show}
-        if scene.solver.cells is not None:
-            return _on_given_grid(scene, scene.solver.cells, times, measure, options)
-        refined = bcre_pde.solve_refined(
-            problem_of(scene),
-            times,
-            measure,
-            allowed,
-            coarsest=_coarsest(scene),
-            finest=_finest(scene),
-            **options,
-        )
+        options: dict[str, Any] = {
+            "method": scene.solver.method,
+            "tolerance": scene.solver.tolerance,
+            "stop": show,
+        }
+        problem = problem_of(scene)
+        if scene.solver.cells is None:
+            refined = bcre_pde.solve_refined(
+                problem,
+                times,
+                measure,
+                allowed,
+                coarsest=_coarsest(scene),
+                finest=_finest(scene),
+                **options,
+            )
+        else:
+
+            def measure_on(cells: int) -> tuple[bcre_pde.Solution, list[Array]]:
+                solution = bcre_pde.solve(problem, times, cells, **options)
+                return solution, [measure(solution)]
+
+            (refined,) = bcre_pde.measure_refined(measure_on, _given_grids(scene.solver.cells))
     return as_run(scene, refined.solution, refined.error)
 
 
-def _on_given_grid(
-    scene: Scene,
-    cells: int,
-    times: Sequence[float],
-    measure: Callable[[bcre_pde.Solution], Array],
-    options: dict[str, Any],
-) -> Run:
-    """The solution on the scene's own PDE grid, its error from grids two and four times coarser."""
-    problem = problem_of(scene)
-    solutions = [
-        bcre_pde.solve(problem, times, grid, **options)
-        for grid in (cells, cells // 2, cells // 4)
-        if grid >= bcre_pde.SMALLEST_GRID
-    ]
-    error = None
-    if len(solutions) == 3:
-        fine, medium, coarse = map(measure, solutions)
-        error = bcre_pde.grid_convergence_index(fine, medium, coarse).error
-    return as_run(scene, solutions[0], error)
+def _given_grids(cells: int) -> list[int]:
+    """The scene's own PDE grid, and for its error two that are two and four times coarser."""
+    return [grid for grid in (cells // 4, cells // 2, cells) if grid >= bcre_pde.SMALLEST_GRID]
 
 
 def write_run(runs: Sequence[Run], folder: Path) -> dict[str, Any]:

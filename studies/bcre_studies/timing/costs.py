@@ -25,7 +25,7 @@ import numpy as np
 import pandas as pd
 
 import bcre_pde
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.rounding import significant
 from bcre_studies.models.simulate import frame_times, problem_of, run_automaton
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene

@@ -18,8 +18,9 @@ import numpy as np
 import pandas as pd
 
 import bcre_pde
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.height_only import settle
 from bcre_studies.models.simulate import as_run, problem_of, run_automaton
 from bcre_studies.observables.outcome import slope

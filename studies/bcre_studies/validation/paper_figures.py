@@ -27,16 +27,12 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 import bcre_pde
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import (
-    Measure,
-    compare,
-    refine,
-    relative_difference,
-    relative_error,
-    sample,
-    significant,
-)
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.compare import Measure, compare, refine
+from bcre_studies.comparison.difference import relative_difference, sample
+from bcre_studies.comparison.error import relative_error
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.simulate import (
     Run,
     as_run,
@@ -111,10 +107,10 @@ def _compare_case(case: tuple[str, int]) -> dict[str, Any]:
         "d": scene.d,
         **result.row(),
         "difference_with_D_eff": significant(
-            relative_difference(result.automaton, spread.measured), 3
+            relative_difference(result.automaton, spread.value), 3
         ),
         "difference_with_D_eff_error": significant(relative_error(spread), 1),
-        **_of_schemes(scene, times, measure, result.pde.measured),
+        **_of_schemes(scene, times, measure, result.pde.value),
     }
 
 
@@ -141,7 +137,7 @@ def _compare_climb(name: str) -> dict[str, Any]:
         "case": name,
         "d": scene.d,
         **result.row(),
-        **_of_schemes(scene, times, climb_time, result.pde.measured),
+        **_of_schemes(scene, times, climb_time, result.pde.value),
     }
 
 

@@ -28,8 +28,9 @@ import pandas as pd
 
 import bcre_ca
 from bcre_ca.rule import Order, Sign
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.simulate import rule_of
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array

@@ -14,8 +14,9 @@ import pandas as pd
 from scipy.stats import bootstrap
 
 import bcre_pde
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.simulate import effective_problem_of, problem_of, run_automaton
 from bcre_studies.observables.fronts import roughness
 from bcre_studies.reporting import style

@@ -27,9 +27,10 @@ import pandas as pd
 import bcre_ca.theory
 import bcre_pde
 import bcre_pde.theory
-from bcre_studies.comparison.claim import Claim, Verdict, worst
-from bcre_studies.comparison.compare import significant
-from bcre_studies.comparison.scaled import compare_each
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.compare import compare_each
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict, worst
 from bcre_studies.models.simulate import Run, as_run, problem_of, rule_of, run_automaton
 from bcre_studies.observables import fronts as observe
 from bcre_studies.reporting import style
@@ -149,7 +150,9 @@ def _modes(case: tuple[str, float]) -> list[Row]:
     # BCRE's decay rate may be zero, its phase speed may not.
     scales = [value for pair in zip(own[::2], nominal[1::2], strict=True) for value in pair]
     layer = R0 if field == "u" else 0.0
-    results = compare_each(scene, [0.0, SPAN], measured, scales, TOLERANCE, effective(scene, layer))
+    results = compare_each(
+        scene, [0.0, SPAN], measured, scales, TOLERANCE, effective(scene, layer), finest=800
+    )
     rows = [
         {
             "quantity": names[index % 2],
@@ -177,7 +180,9 @@ def _rough_slope() -> tuple[list[Row], pd.DataFrame]:
     def measured(run: Run) -> list[float]:
         return [observe.roughness(u) for u in run.u[1:]]
 
-    results = compare_each(scene, [0.0, *SHOWN], measured, HEIGHT, TOLERANCE, own)
+    results = compare_each(
+        scene, [0.0, *SHOWN], measured, [HEIGHT] * len(SHOWN), TOLERANCE, own, finest=800
+    )
     table = [
         {
             "quantity": RMS,

@@ -31,9 +31,10 @@ import pandas as pd
 
 import bcre_ca.theory
 import bcre_pde.theory
-from bcre_studies.comparison.claim import Claim, Verdict, worst
-from bcre_studies.comparison.compare import significant
-from bcre_studies.comparison.scaled import compare_each
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.compare import compare_each
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict, worst
 from bcre_studies.models.simulate import Run, problem_of, rule_of
 from bcre_studies.observables import fronts as observe
 from bcre_studies.reporting import style
@@ -109,7 +110,7 @@ def front(d: float, excess: float) -> list[Row]:
         scene,
         times,
         lambda run: [observe.front_speed(run, release)],
-        v + theory,
+        [v + theory],
         TOLERANCE,
         coarsest=80,
         finest=640,
@@ -144,7 +145,7 @@ def wave(d: float, R0: float) -> list[Row]:
         scene,
         [0.0, span],
         speed,
-        theory,
+        [theory],
         TOLERANCE,
         problem_of(scene, rule.effective_diffusion(), rule.effective_curvature(R0)),
         coarsest=20,
@@ -174,7 +175,7 @@ def scarp(d: float) -> list[Row]:
         finest=640,
     )
     return [
-        _row(SCARP, d, "H", H, result.row(pde_theory=law))
+        _row(SCARP, d, "H", H, result.row(np.nan, law))
         for H, law, result in zip(HEIGHTS, laws, results, strict=True)
     ]
 
@@ -191,7 +192,9 @@ def reach(d: float) -> list[Row]:
         )
         return [start - end for end in ends]
 
-    results = compare_each(scene, [0.0, scene.time.until], reaches, HALF_WIDTH, TOLERANCE)
+    results = compare_each(
+        scene, [0.0, scene.time.until], reaches, [HALF_WIDTH] * 2, TOLERANCE, finest=800
+    )
     theory = closed_reaches(scene, scene.material.D)
     rule = rule_of(scene)
     own_theory = closed_reaches(scene, rule.effective_diffusion(), rule.dt)

@@ -25,14 +25,12 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 
 import bcre_pde
-from bcre_studies.comparison.claim import Claim, Verdict, verdict_of
-from bcre_studies.comparison.compare import (
-    refine,
-    relative_difference,
-    relative_error,
-    sample,
-    significant,
-)
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.compare import refine
+from bcre_studies.comparison.difference import relative_difference, sample
+from bcre_studies.comparison.error import relative_error
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict, verdict_of
 from bcre_studies.models.simulate import Run, effective_problem_of, problem_of, run_automaton
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
@@ -97,8 +95,7 @@ def _compare(case: tuple[str, str, int, int]) -> dict[str, Any]:
         for variant, problem in _problems(scene).items()
     }
     differences = {
-        variant: relative_difference(automaton, refined.measured)
-        for variant, refined in found.items()
+        variant: relative_difference(automaton, refined.value) for variant, refined in found.items()
     }
     for variant in VARIANTS:
         row[variant] = significant(differences[variant], 3)

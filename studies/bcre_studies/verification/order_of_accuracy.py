@@ -26,10 +26,11 @@ import pandas as pd
 import bcre_ca
 import bcre_pde
 from bcre_ca.rule import Scheme
-from bcre_pde import exact
-from bcre_pde.solve import TOLERANCE, Method
-from bcre_studies.comparison.claim import Claim, Verdict, worst
-from bcre_studies.comparison.compare import significant
+from bcre_pde import Method, exact
+from bcre_pde.solve import TOLERANCE
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict, worst
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
 from bcre_studies.sweeps.each import each

@@ -17,7 +17,7 @@ from bcre_studies.advisor.advise import Effort, advise
 from bcre_studies.advisor.options import Option
 from bcre_studies.advisor.pilot import FINEST, run_model
 from bcre_studies.advisor.question import Question
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.rounding import significant
 from bcre_studies.performance.random_scenes import random_scene
 from bcre_studies.timing.costs import recorded
 

@@ -17,9 +17,8 @@ import numpy as np
 
 import bcre_ca
 import bcre_pde
-from bcre_pde import exact
-from bcre_pde.solve import Method
-from bcre_studies.comparison.compare import sample
+from bcre_pde import Method, exact
+from bcre_studies.comparison.difference import sample
 from bcre_studies.models.simulate import as_run, problem_of, rule_of
 from bcre_studies.observables.fronts import edge
 from bcre_studies.performance.rivals import (

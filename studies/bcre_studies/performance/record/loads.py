@@ -14,7 +14,8 @@ from pde import CartesianGrid
 import bcre_ca
 from bcre_ca.line.kernels import march_many
 from bcre_ca.rule import Ends, Scheme
-from bcre_pde import BCRE, Material
+from bcre_pde import Material
+from bcre_pde.equation import BCRE
 from bcre_studies.performance.rivals import numpy_automaton
 from bcre_studies.scenes.domain import Array
 from bcre_studies.timing.machine import Load

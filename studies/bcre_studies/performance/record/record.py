@@ -11,7 +11,7 @@ from typing import Any
 
 import pandas as pd
 
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.rounding import significant
 from bcre_studies.performance.record import contest
 from bcre_studies.system.files import REPORTS, replace_text
 from bcre_studies.timing import machine

@@ -17,7 +17,7 @@ import numpy as np
 import pandas as pd
 
 import bcre_ca
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.rounding import significant
 from bcre_studies.system.files import REPORTS
 from bcre_studies.timing.clock import Call, interleaved
 

@@ -32,8 +32,9 @@ import numpy as np
 import pandas as pd
 from matplotlib.colors import BoundaryNorm, ListedColormap
 
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.observables.named import NAMES, posed, scale, value
 from bcre_studies.performance.record import specialisation
 from bcre_studies.performance.scene_needs.ablation import (

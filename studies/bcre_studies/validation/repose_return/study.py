@@ -20,6 +20,7 @@ slopes are relative to Sc, since S - Sc may vanish.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,9 +29,11 @@ import pandas as pd
 import bcre_ca.theory
 import bcre_pde
 import bcre_pde.theory
-from bcre_studies.comparison.claim import Claim, Verdict, worst
-from bcre_studies.comparison.compare import SHARE
-from bcre_studies.comparison.measured import Measured, numbers, shown
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.compare import Comparison
+from bcre_studies.comparison.error import allowed_error
+from bcre_studies.comparison.rounding import shown
+from bcre_studies.comparison.verdict import Verdict, worst
 from bcre_studies.models.simulate import effective_problem_of, problem_of, run_automaton
 from bcre_studies.observables.outcome import slope, spent
 from bcre_studies.reporting import style
@@ -119,25 +122,23 @@ def single(kind: str, excess: float, pulse: float) -> dict[str, Any]:
     end = run_automaton(scene, times, spent)
     automaton = slope(end.x, end.h[-1]) - Sc
 
-    def refined(problem: bcre_pde.Problem) -> Measured:
+    def refined(problem: bcre_pde.Problem) -> bcre_pde.Measured:
         found = bcre_pde.solve_refined(
             problem,
             times,
             lambda solution: slope(solution.x, solution.h[-1]) - Sc,
-            lambda value: SHARE * max(abs(value - automaton), TOLERANCE * Sc),
+            lambda value: allowed_error(automaton, value, TOLERANCE, Sc),
             coarsest=GRIDS[0],
             finest=GRIDS[-1],
             tolerance=SOLVER_TOLERANCE,
             stop=spent,
         )
-        return Measured(found.measured, found.error)
+        return bcre_pde.Measured(found.value, found.error)
 
-    row = numbers(
-        automaton, refined(problem_of(scene)), refined(effective_of(scene)), TOLERANCE, Sc
-    )
+    pde, effective = refined(problem_of(scene)), refined(effective_of(scene))
     return {
         **_head(kind, excess, pulse, 1),
-        **row,
+        **Comparison(automaton, pde, effective, TOLERANCE, Sc).row(),
         "automaton_theory": closed_form(scene, scene.d),
         "pde_theory": closed_form(scene, 0.0),
     }
@@ -148,28 +149,32 @@ def repeated(excess: float, pulse: float) -> tuple[Rows, Rows]:
     scene = scene_of(SLOW, excess, pulse).with_changes(until=1000.0)
     Sc = scene.material.Sc
     automaton = np.array(slopes_of_automaton(scene, RELEASES)) - Sc
-    on_grids = {
-        model: [np.array(slopes_of_pde(scene, problem, cells, RELEASES)) - Sc for cells in GRIDS]
-        for model, problem in (("pde", problem_of(scene)), ("pde effective", effective_of(scene)))
+
+    def refined(problem: bcre_pde.Problem) -> list[bcre_pde.Measured]:
+        def measure_on(cells: int) -> tuple[None, list[float]]:
+            slopes = slopes_of_pde(scene, problem, cells, RELEASES)
+            return None, [float(after) for after in np.array(slopes) - Sc]
+
+        found = bcre_pde.measure_refined(measure_on, GRIDS)
+        return [bcre_pde.Measured(after.value, after.error) for after in found]
+
+    pde, effective = refined(problem_of(scene)), refined(effective_of(scene))
+    values: dict[str, Sequence[float]] = {
+        "ca": automaton.tolist(),
+        "pde": [after.value for after in pde],
+        "pde effective": [after.value for after in effective],
     }
     points = [
-        {"S0 - Sc": excess, "pulse": pulse, "pulses": n + 1, "model": model, "S - Sc": values[n]}
-        for model, values in [("ca", automaton)] + [(m, v[-1]) for m, v in on_grids.items()]
+        {"S0 - Sc": excess, "pulse": pulse, "pulses": n + 1, "model": model, "S - Sc": slopes[n]}
+        for model, slopes in values.items()
         for n in range(RELEASES)
     ]
     rows = []
     for n in SHOWN:
-        after = {
-            model: _finest(*(float(values[n - 1]) for values in grids))
-            for model, grids in on_grids.items()
-        }
-        row = numbers(float(automaton[n - 1]), after["pde"], after["pde effective"], TOLERANCE, Sc)
+        of_models = float(automaton[n - 1]), pde[n - 1], effective[n - 1]
+        row = Comparison(*of_models, TOLERANCE, Sc).row()
         rows.append({**_head(REPEATED, excess, pulse, n), **row})
     return rows, points
-
-
-def _finest(coarse: float, medium: float, fine: float) -> Measured:
-    return Measured(fine, bcre_pde.grid_convergence_index(fine, medium, coarse).error)
 
 
 def closed_form(scene: Scene, d: float) -> float:

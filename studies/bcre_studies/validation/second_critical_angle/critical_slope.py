@@ -23,7 +23,6 @@ import bcre_ca
 import bcre_pde
 from bcre_ca.theory import max_stable_step, second_critical_excess
 from bcre_pde.theory import second_critical_slope
-from bcre_studies.comparison.measured import Measured
 from bcre_studies.observables.outcome import growth_rate
 from bcre_studies.scenes.domain import Array
 
@@ -84,7 +83,7 @@ def measure_sd_of(rule: bcre_ca.Rule) -> float:
     return _root(rate, expected, FOLDS / (rule.gamma * expected * late), 1e-7)
 
 
-def measure_sd_pde(material: bcre_pde.Material) -> Measured:
+def measure_sd_pde(material: bcre_pde.Material) -> bcre_pde.Measured:
     """Sd - Sc of BCRE on three grids, with the finest one's convergence index; v, D, gamma > 0.
 
     Lengths are counted in D/v and times in D/v^2, the only ones there are. Released is a Gaussian
@@ -114,7 +113,7 @@ def measure_sd_pde(material: bcre_pde.Material) -> Measured:
         return _root(rate, expected, FOLDS / (gamma * expected * times[1]), 1e-6)
 
     coarse, medium, fine = (on_grid(peclet) for peclet in CELL_PECLET)
-    return Measured(fine, bcre_pde.grid_convergence_index(fine, medium, coarse).error)
+    return bcre_pde.Measured(fine, bcre_pde.grid_convergence_index(fine, medium, coarse).error)
 
 
 def effective_for_growth(material: bcre_pde.Material, d: float) -> bcre_pde.Material:

@@ -32,9 +32,10 @@ import pandas as pd
 import bcre_ca.theory
 import bcre_pde
 import bcre_pde.theory
-from bcre_studies.comparison.claim import Claim, Verdict, verdict_of, within, worst
-from bcre_studies.comparison.compare import to_error
-from bcre_studies.comparison.measured import Measured, numbers, shown
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.compare import Comparison
+from bcre_studies.comparison.rounding import shown, to_error
+from bcre_studies.comparison.verdict import Verdict, verdict_of, within, worst
 from bcre_studies.observables.outcome import Outcome
 from bcre_studies.reporting import style
 from bcre_studies.sweeps.each import each
@@ -112,12 +113,12 @@ def sd_row(v: float, D: float, gamma: float, d: float) -> dict[str, Any]:
     return {
         **_head(SD, material, d),
         "automaton d/4": shown(measure_sd_automaton(material, d / 4)),
-        **numbers(
+        **Comparison(
             measure_sd_automaton(material, d),
             measure_sd_pde(material),
             measure_sd_pde(effective_for_growth(material, d)),
             TOLERANCE,
-        ),
+        ).row(),
         "automaton_theory": shown(bcre_ca.theory.second_critical_excess(v, D, gamma, d)),
         "pde_theory": shown(_continuous(material)),
     }
@@ -131,12 +132,12 @@ def calibrated_row(v: float, D: float, gamma: float, d: float) -> dict[str, Any]
     return {
         **_head(SD_CALIBRATED, material, d),
         "automaton d/4": shown(measure_sd_of(calibrated_rule(material, d / 4))),
-        **numbers(
+        **Comparison(
             measure_sd_of(rule),
             measure_sd_pde(material),
             measure_sd_pde(effective_for_growth(left, d)),
             TOLERANCE,
-        ),
+        ).row(),
         "automaton_theory": shown(rule.second_critical_slope() - rule.Sc),
         "pde_theory": shown(_continuous(material)),
     }
@@ -176,12 +177,12 @@ def threshold_row(pulse: float) -> dict[str, Any]:
     return {
         **_head(THRESHOLD, _figure1(), 1.0, pulse=pulse),
         "automaton d/4": to_error(finer.value, finer.error),
-        **numbers(
+        **Comparison(
             to_error(automaton.value, automaton.error),
-            Measured(pde.value, pde.error),
-            Measured(effective.value, effective.error),
+            bcre_pde.Measured(pde.value, pde.error),
+            bcre_pde.Measured(effective.value, effective.error),
             TOLERANCE,
-        ),
+        ).row(),
     }
 
 

@@ -11,8 +11,10 @@ from typing import Any
 import pandas as pd
 
 import bcre_ca
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import relative_difference, significant
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.difference import relative_difference
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.simulate import rule_of
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, load

@@ -9,8 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 import bcre_pde
-from bcre_pde import exact
-from bcre_pde.solve import Ends
+from bcre_pde import Ends, exact
 from bcre_studies.models.simulate import problem_of
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, load

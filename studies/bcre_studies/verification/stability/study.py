@@ -35,11 +35,11 @@ from scipy.optimize import bisect
 
 import bcre_ca
 import bcre_pde
-from bcre_pde import theory
+from bcre_pde import Method, theory
 from bcre_pde.explicit import ExplicitMethod
-from bcre_pde.solve import Method
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.reporting import style
 from bcre_studies.sweeps.each import each
 from bcre_studies.verification.stability.amplification import Numbers, Variant, rule_with, stable
@@ -140,8 +140,8 @@ class Case(NamedTuple):
 def _pde_stable(method: ExplicitMethod, growth: float, numbers: Numbers) -> bool:
     """:func:`bcre_pde.theory.stable`, on fewer waves and up to some growth."""
     return all(
-        theory.amplification_bound(*numbers, method, ANGLES, limited=limited) <= 1 + growth
-        for limited in (False, True)
+        theory.amplification_bound(*numbers, method, ANGLES, rough=rough) <= 1 + growth
+        for rough in (False, True)
     )
 
 

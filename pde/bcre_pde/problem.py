@@ -1,0 +1,83 @@
+"""What is solved, and what a solution holds; needs neither py-pde nor compiled code."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bcre_pde.material import Material
+
+Array = NDArray[np.float64]
+Ends = Literal["open", "periodic"]
+Method = Literal["runge-kutta", "RK45", "DOP853", "LSODA", "BDF"]
+
+SMALLEST_GRID = 8
+"""Fewer cells do not hold the stencils next to both ends."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """An initial value problem.
+
+    Parameters
+    ----------
+    initial: function of positions x, shape (N,), that returns h and R there, lengths.
+    material: the coefficients.
+    length: the domain is 0 <= x <= length, x running downhill; finite, > 0.
+    ends: ``"open"`` (closed top, open foot) or ``"periodic"`` (in h + Sc x and R).
+
+    Raises
+    ------
+    ValueError
+        naming the parameter, its value and what is allowed.
+    """
+
+    initial: Callable[[Array], tuple[Array, Array]]
+    material: Material
+    length: float
+    ends: Ends = "open"
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.length) and self.length > 0):
+            raise ValueError(f"length = {self.length!r}: must be a finite number > 0")
+        if self.ends not in get_args(Ends):
+            raise ValueError(f"ends = {self.ends!r}: must be one of {get_args(Ends)}")
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Layers at the cell centres ``x`` (N,) and times ``t`` (T,): ``h``, ``R`` of shape (T, N).
+
+    ``outflow`` (T,) is the area that has left through the foot, so that
+    ``dx sum(h + R) + outflow`` does not change; ``evaluations`` counts right-hand sides.
+    """
+
+    problem: Problem
+    x: Array
+    t: Array
+    h: Array
+    R: Array
+    outflow: Array
+    steps: int
+    evaluations: int
+    wall_s: float
+
+    @property
+    def dx(self) -> float:
+        """Cell length."""
+        return self.problem.length / self.x.size
+
+    @property
+    def u(self) -> Array:
+        """Height above the repose line, h + Sc x, shape (T, N)."""
+        return self.h + self.problem.material.Sc * self.x
+
+    def mass(self) -> Array:
+        """Area of sand in the domain at every time, shape (T,)."""
+        rows = zip(self.h, self.R, strict=True)
+        return np.array([self.dx * (math.fsum(h) + math.fsum(R)) for h, R in rows])
