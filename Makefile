@@ -3,7 +3,7 @@ SHELL := /bin/sh
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: help install reports speed test bench check lint clean
+.PHONY: help install reports speed test faults bench check lint clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-9s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -27,6 +27,9 @@ speed: install ## renew the committed record of speed (some minutes, on a quiet 
 
 test: install ## run the tests
 	$(BIN)/python -m pytest
+
+faults: install ## try every fault again and write reports/quality/faults.csv
+	$(BIN)/python tests/robustness/faults.py
 
 bench: install ## time the automaton against what would be used instead (under 3 minutes)
 	@$(BIN)/python -c 'import fipy' 2>/dev/null \

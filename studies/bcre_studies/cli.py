@@ -6,10 +6,10 @@ import signal
 import sys
 import threading
 from pathlib import Path
-from typing import Literal
 
 import click
 
+from bcre_studies.models.registry import BOTH, CHOICES
 from bcre_studies.system.one_line import one_line
 
 
@@ -34,9 +34,7 @@ def list_all() -> None:
 
 @app.command()
 @click.argument("scene")
-@click.option(
-    "--model", type=click.Choice(["ca", "pde", "both"]), default="both", show_default=True
-)
+@click.option("--model", type=click.Choice(CHOICES), default=BOTH, show_default=True)
 @click.option(
     "--set",
     "assignments",
@@ -56,7 +54,7 @@ def list_all() -> None:
 )
 def run(
     scene: str,
-    model: Literal["ca", "pde", "both"],
+    model: str,
     assignments: tuple[str, ...],
     frames: int,
     out: Path | None,
@@ -68,15 +66,11 @@ def run(
     folder = Path("out") / Path(scene).stem if out is None else out
     require_writable("--out", folder, ("profiles.csv", "summary.json"))
     loaded = load(scene, assignments)  # what is refused here need not wait for the solvers
-    from bcre_studies.running.run import run_scene, write_run
+    from bcre_studies.running.run import notes, run_scene, write_run
 
     summary = write_run(run_scene(loaded, model, frames), folder)
-    if model != "pde" and loaded.material.kappa > 0 and loaded.automaton.scheme == "upwind":
-        click.echo(
-            "note: the paper's rule has no curvature term; the automaton runs without "
-            f"kappa = {loaded.material.kappa!r} (automaton.scheme calibrated or limited takes it)",
-            err=True,
-        )
+    for note in notes(loaded, model):
+        click.echo(f"note: {note}", err=True)
     for name, numbers in summary.items():
         facts = ", ".join(f"{key} {_short(value)}" for key, value in numbers.items())
         click.echo(f"{name}: {facts}")
@@ -168,7 +162,8 @@ def speed(record: bool) -> None:
 def check() -> None:
     """Judge all claims again; exit 1 where a verdict differs from the recorded one."""
     from bcre_studies.catalog import STUDIES
-    from bcre_studies.publishing.write import find, recorded_verdicts, verdict_table
+    from bcre_studies.publishing.finding import find
+    from bcre_studies.publishing.write import recorded_verdicts, verdict_table
 
     recorded = recorded_verdicts()
     verdicts = verdict_table([find(name) for name in STUDIES])

@@ -1,10 +1,10 @@
-"""The ledger: what the paper claims, and what became of each claim.
+"""What the paper claims, and which of our own claims decide each.
 
-The sentences are ours, the claims are the paper's. Its verdict follows from those of our own claims
-by a rule: *reproduced* if all claims that say so agree as they stand; *reproduced under conditions*
-if all that say so under the condition named agree, if need be once the automaton's own diffusion
-is counted; else *not reproduced*. What names no number, size or condition by which it could fail
-is *not testable as stated*.
+The sentences are ours, the claims are the paper's. A claim of the paper is *reproduced* if all our
+claims under ``as_stated`` agree. It is *reproduced under conditions* if all those under
+``under_condition`` agree, if need be once the automaton's own diffusion is counted. Otherwise it is
+*not reproduced*. A claim that names no number, size or condition by which it could fail is *not
+testable as stated*.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ UNTESTABLE = "not testable as stated"
 
 
 @dataclass(frozen=True)
-class Entry:
+class PaperClaim:
     """A claim of the paper.
 
     Parameters
@@ -61,8 +61,8 @@ def _holds(claim: Claim) -> bool:
     return claim.verdict in (Verdict.AGREE, Verdict.AGREE_EFFECTIVE)
 
 
-ENTRIES = (
-    Entry(
+PAPER_CLAIMS = (
+    PaperClaim(
         text="A slope close to repose that is perturbed locally avalanches and returns to an angle "
         "below the critical one (first property, figure 2)",
         as_stated=(("repose_return", "first property as printed"),),
@@ -70,7 +70,7 @@ ENTRIES = (
         remark="only where the avalanche runs to the top, and then to S = Sc, not below; a single "
         "small avalanche leaves the slope as it was",
     ),
-    Entry(
+    PaperClaim(
         text="Roughness of the surface dissipates through the diffusion terms of the model (second "
         "property)",
         as_stated=(
@@ -85,7 +85,7 @@ ENTRIES = (
         remark="R is smoothed by D; the surface is smoothed by no term of the model (BCRE with "
         "kappa = 0 only carries it uphill) but by the size of the automaton's cells, gamma d/2",
     ),
-    Entry(
+    PaperClaim(
         text="Avalanches propagate not only downhill but also uphill (third property, figure 3)",
         as_stated=(
             ("uphill_propagation", "surface wave"),
@@ -100,7 +100,7 @@ ENTRIES = (
         remark="the surface wave climbs at gamma R on any slope, the rolling layer above Sd only; "
         "in figure 3, far below Sd, what lies above the start is where the pulse already lay",
     ),
-    Entry(
+    PaperClaim(
         text="The second variable brings a second critical angle, as in the continuous model, "
         "above which any avalanche is catastrophic (figure 1)",
         as_stated=(("second_critical_angle", "second critical slope"),),
@@ -113,7 +113,7 @@ ENTRIES = (
         remark="it exists and needs the second layer, but lies at another slope than in BCRE, "
         "which it meets only as d goes to 0; and finite pulses are catastrophic below it",
     ),
-    Entry(
+    PaperClaim(
         text="The dynamics of single-variable models can still be observed; the model extends them",
         as_stated=(("repose_return", "first property as printed"),),
         under_condition=(
@@ -124,7 +124,7 @@ ENTRIES = (
         remark="the same end states are reached, but only after a disturbance that runs to the "
         "top: a one-variable pile cannot stand above repose, this one can",
     ),
-    Entry(
+    PaperClaim(
         text="The two-variable automaton gives the same predictions as the continuous model",
         as_stated=(
             ("paper_figures", "figure1 profile"),
@@ -138,7 +138,7 @@ ENTRIES = (
         remark="figures 2 and 3 agree once D_eff is counted, but Sd does not: at their cell Peclet "
         "number of 25 it is another one even then, and waves of less than twelve cells differ too",
     ),
-    Entry(
+    PaperClaim(
         text="The scheme is simpler and more efficient than the numerical solution of the PDEs",
         as_stated=(("speed_error", "efficiency"),),
         under_condition=(
@@ -149,7 +149,7 @@ ENTRIES = (
         "that it is the faster only where a coarse answer will do; of second order it stays so "
         "for longer",
     ),
-    Entry(
+    PaperClaim(
         text="The model is fit for interactive simulation",
         as_stated=(("scaling", "interactive"),),
         under_condition=(("scaling", "interactive"),),

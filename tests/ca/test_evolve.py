@@ -39,7 +39,7 @@ def test_step_counts_the_deficit_of_a_slope_below_repose():
 @pytest.mark.parametrize("steps", [0, 5])
 @pytest.mark.parametrize("ends", ["open", "periodic"])
 def test_evolve_returns_new_arrays_and_leaves_its_inputs_alone(ends, steps):
-    h, R = np.linspace(5, 0, 11), np.ones(11)
+    h, R = np.linspace(5, 0, 11), np.linspace(0, 1, 11)
     before = h.copy(), R.copy()
     new_h, new_R = evolve(h, R, FIGURE_1, steps, ends)
     assert np.array_equal(h, before[0])

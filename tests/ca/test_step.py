@@ -1,6 +1,5 @@
 """The plain step against the paper worked by hand, and the readings of its printed rule."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -135,4 +134,4 @@ def test_frozen_slope_erodes_by_the_slope_that_it_is_given(ends):
 def test_layers_may_grow_beyond_all_numbers_without_a_word():
     with np.errstate(all="ignore"):
         h, R, _ = step(np.array([1e308, -1e308, 0.0]), np.full(3, 1e10), replace(PAPER, gamma=1.0))
-    assert not math.isfinite(h.sum() + R.sum())
+    assert not (np.isfinite(h).all() and np.isfinite(R).all())

@@ -17,7 +17,7 @@ from bcre_studies.advisor.pilot import Allowance, PilotError, reference, run_mod
 from bcre_studies.advisor.question import Question, seconds_of
 from bcre_studies.advisor.scene_text import scene_text
 from bcre_studies.cli import app
-from bcre_studies.models.simulate import frame_times
+from bcre_studies.models.run import frame_times
 from bcre_studies.performance import advice as study
 from bcre_studies.performance.random_scenes import random_scene
 from bcre_studies.running.run import run_scene

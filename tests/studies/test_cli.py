@@ -20,7 +20,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bcre_studies import catalog, cli
-from bcre_studies.models.simulate import rule_of
+from bcre_studies.models.automaton import rule_of
 from bcre_studies.running import run as run_module
 from bcre_studies.scenes.listing import built_in_names
 from bcre_studies.scenes.scene import SECTIONS, load
@@ -76,6 +76,9 @@ def call(*arguments):
         except SystemExit as ended:
             code = ended.code
     return Ended(code, out.getvalue(), err.getvalue())
+
+
+NAMES = {"ca": "automaton", "pde": "PDE"}
 
 
 @pytest.fixture
@@ -415,7 +418,7 @@ def test_solver_that_gives_up_is_named_with_its_tolerance(bcre, changes):
 )
 def test_run_that_would_not_end_is_refused_with_its_steps(bcre, model, change):
     ended = bcre("run", "figure2", "--model", model, "--set", change)
-    refused(ended, "time.", f"steps of the {model}", "must take at most")
+    refused(ended, "time.", f"steps of the {NAMES[model]}", "must take at most")
     assert files() == []
 
 
@@ -521,7 +524,7 @@ def test_list_names_all_scenes_and_studies_with_their_titles(bcre):
     for name in built_in_names():
         assert told[name] == load(name).title
     for name in catalog.STUDIES:
-        assert told[name] == catalog.study(name).TITLE
+        assert told[name] == catalog.STUDIES[name].title
     assert math.isclose(len(told), 2 + len(built_in_names()) + len(catalog.STUDIES))
     assert files() == []
 

@@ -7,11 +7,12 @@ from hypothesis import strategies as st
 
 import bcre_pde
 from bcre_studies.comparison.compare import Comparison, compare
-from bcre_studies.comparison.difference import relative_difference, sample
+from bcre_studies.comparison.difference import relative_difference
 from bcre_studies.comparison.error import relative_error
 from bcre_studies.comparison.rounding import significant, to_error
 from bcre_studies.comparison.verdict import Verdict
-from bcre_studies.models.simulate import as_run, problem_of, run_automaton
+from bcre_studies.models.registry import AUTOMATON
+from bcre_studies.models.run import Run
 from bcre_studies.scenes.scene import load
 
 
@@ -71,22 +72,17 @@ def test_sampling_between_cells_is_sixth_order(ends):
         scene = load("climbing_wave" if ends == "periodic" else "figure2").with_changes(length=20.0)
         places = (np.arange(cells) + 0.5) * 20 / cells
         R = 2 + np.sin(k * places)
-        run = as_run(
-            scene,
-            bcre_pde.Solution(
-                problem_of(scene), places, np.zeros(1), R[None], R[None], np.zeros(1), 0, 0, 0.0
-            ),
-        )
-        gaps.append(np.abs(sample(run, x) - 2 - np.sin(k * x)).max())
+        run = Run(scene, places, np.zeros(1), R[None], R[None], np.zeros(1), 0, 0)
+        gaps.append(np.abs(run.sample(x) - 2 - np.sin(k * x)).max())
     assert gaps[1] < 1e-6
     assert math.log2(gaps[0] / gaps[1]) > 5
 
 
 def test_sampling_at_the_cells_themselves_changes_nothing():
     scene = load("figure2")
-    run = run_automaton(scene, [0.0, 2.0])
-    assert np.array_equal(sample(run, scene.centres()), run.R[-1])
-    assert np.array_equal(sample(run, scene.centres(), "u", 0), run.u[0])
+    run = AUTOMATON.run(scene, [0.0, 2.0])
+    assert np.array_equal(run.sample(scene.centres()), run.R[-1])
+    assert np.array_equal(run.sample(scene.centres(), "u", 0), run.u[0])
 
 
 def test_verdict_of_a_comparison_follows_from_its_differences():
@@ -115,7 +111,7 @@ def test_figures_2_and_3_differ_by_the_automatons_own_diffusion(name, nominal, e
     scene = load(name)
     x = scene.centres()
     found = compare(
-        scene, [scene.time.until], lambda run: sample(run, x), 0.05, coarsest=100, finest=400
+        scene, [scene.time.until], lambda run: run.sample(x), 0.05, coarsest=100, finest=400
     )
     assert found.difference == pytest.approx(nominal, rel=0.1)
     assert found.difference_effective == pytest.approx(effective, rel=0.1)

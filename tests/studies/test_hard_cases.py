@@ -9,7 +9,7 @@ import bcre_pde
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.verification.hard_cases import adaptive_step, scarp_grids
 from bcre_studies.verification.hard_cases import study as study
-from bcre_studies.verification.hard_cases.study import FAILS, REFUSED, SURVIVES, Case
+from bcre_studies.verification.hard_cases.study import FAILS, REFUSED, SURVIVES, Attempt
 
 SCENES = study.scenes()
 
@@ -22,14 +22,14 @@ SCENES = study.scenes()
     ],
 )
 def test_fixed_steps_are_refused_where_known_and_fail_by_name_where_outgrown(scene, told):
-    row = study._try(Case(scene, "ca", "upwind", 1.0))
+    row = study._try(Attempt(scene, "ca", "upwind", 1.0))
     assert row["verdict"] == (REFUSED if "2.5" in scene else FAILS)
     assert row["told"].startswith(told)
-    assert study._try(Case(scene, "ca"))["verdict"].startswith(SURVIVES)
+    assert study._try(Attempt(scene, "ca"))["verdict"].startswith(SURVIVES)
 
 
 def test_an_avalanche_outgrows_its_step_after_t_200_where_R_passes_100():
-    told = study._try(Case("figure 1, dt = 1", "ca", "upwind", 1.0))["told"]
+    told = study._try(Attempt("figure 1, dt = 1", "ca", "upwind", 1.0))["told"]
     assert 200 < float(told.split("t = ")[1].split(",")[0]) < 400
     assert 100 < float(told.split("R = ")[1].split(";")[0]) < 120
     assert "in cell 63" in told
@@ -37,17 +37,17 @@ def test_an_avalanche_outgrows_its_step_after_t_200_where_R_passes_100():
 
 @pytest.mark.parametrize("scene", ["1 cell", "2 cells"])
 def test_grids_too_small_for_bcre_are_refused_and_no_trouble_to_the_automaton(scene):
-    row = study._try(Case(scene, "pde"))
+    row = study._try(Attempt(scene, "pde"))
     assert (row["verdict"], row["mass_error_at_most"]) == (REFUSED, "")
     assert "must be at least 8" in row["told"]
     for scheme in study.SCHEMES:
-        assert study._try(Case(scene, "ca", scheme))["verdict"] == SURVIVES
+        assert study._try(Attempt(scene, "ca", scheme))["verdict"] == SURVIVES
 
 
 @pytest.mark.parametrize("scheme", study.SCHEMES)
 @pytest.mark.parametrize("scene", [name for name in SCENES if name != "kappa = 10"])
 def test_step_that_follows_its_bounds_survives_everything_with_R_not_negative(scene, scheme):
-    row = study._try(Case(scene, "ca", scheme))
+    row = study._try(Attempt(scene, "ca", scheme))
     assert row["verdict"].startswith(SURVIVES)
     assert row["smallest_R"] >= 0
     assert row["mass_error_at_most"] <= 1e-12
@@ -121,7 +121,7 @@ def test_adapted_step_of_figure_2_gives_the_fixed_steps_R():
     assert row["lowered"] > 3
 
 
-def made_up(told="in cell 3, t = 4: dt = 1", smallest=0.0, mass=1e-13, faults="as expected"):
+def made_up(told="in cell 3, t = 4: dt = 1", smallest=0.0, mass=1e-13):
     rows = [
         {"scene": study.long_run().name, "verdict": SURVIVES, "told": "", "smallest_R": smallest},
         {"scene": "A", "verdict": FAILS, "told": told, "smallest_R": ""},
@@ -136,7 +136,6 @@ def made_up(told="in cell 3, t = 4: dt = 1", smallest=0.0, mass=1e-13, faults="a
         "comparison": pd.DataFrame(table),
         "scarp": scarp_grids.with_changes(scarp_rows(0.0)),
         "adaptive_step": pd.DataFrame([adaptive | {"fixed_steps": 2, "verdict": "agree"}]),
-        "faults": pd.DataFrame([{"fault": "disk full", "verdict": faults}]),
     }
 
 
@@ -149,5 +148,4 @@ def test_claims_fail_by_what_they_claim():
     assert failing(told="it broke at t = 4") == ["each failing model says where"]
     assert failing(smallest=-0.1) == ["R >= 0"]
     assert failing(mass=1e-11) == ["mass"]
-    assert failing(faults="not") == ["faults"]
     assert failing(smallest=float("nan")) == ["finite"]

@@ -5,7 +5,6 @@ import pandas as pd
 import pytest
 
 from bcre_studies.comparison.compare import compare
-from bcre_studies.comparison.difference import sample
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.scenes.scene import load
 from bcre_studies.verification import modified_equation as study
@@ -27,7 +26,7 @@ def test_effective_diffusion_explains_more_than_95_percent_of_figure_2():
 def test_it_does_so_on_parameters_that_stand_in_no_scene(v, D, gamma, courant):
     scene = load("figure2").with_changes(v=v, D=D, gamma=gamma, until=15.0, step=courant / v)
     x = scene.centres()
-    found = compare(scene, [15.0], lambda run: sample(run, x), 0.05, coarsest=100, finest=400)
+    found = compare(scene, [15.0], lambda run: run.sample(x), 0.05, coarsest=100, finest=400)
     assert found.pde.resolved
     assert found.effective.resolved
     assert found.difference > 0.1
@@ -62,7 +61,7 @@ def test_what_is_left_of_figure_2_falls_with_the_cell_faster_than_the_difference
 @pytest.mark.parametrize("name", ["figure2", "rough_slope", "climbing_wave"])
 def test_problems_carry_the_coefficients_of_the_modified_equation(name):
     scene = study.refined_scene(name, 2, 4)
-    problems, m = study._problems(scene), scene.material
+    problems, m = study._variants(scene), scene.material
     dt, d, R0 = scene.time.step, scene.d, scene.initial(scene.centres())[1].min()
     D = m.D + m.v * d / 2 * (1 - m.v * dt / d)
     kappa = m.kappa + m.gamma * d / 2 * (1 - m.gamma * R0 * dt / d)

@@ -8,7 +8,7 @@ import pytest
 import bcre_pde
 from bcre_studies.comparison.compare import Comparison, compare_each
 from bcre_studies.comparison.verdict import Verdict
-from bcre_studies.models.simulate import Run
+from bcre_studies.models.run import Run
 from bcre_studies.observables import fronts as observe
 from bcre_studies.scenes.scene import load
 
@@ -19,7 +19,7 @@ def run_of(x, t, R=None, u=None):
     R = np.zeros((len(t), x.size)) if R is None else np.asarray(R)
     u = np.zeros((len(t), x.size)) if u is None else np.asarray(u)
     h = u - SCENE.material.Sc * x
-    return Run("ca", SCENE, x, np.asarray(t, dtype=float), h, R, np.zeros(len(t)), 0, 0.0)
+    return Run(SCENE, x, np.asarray(t, dtype=float), h, R, np.zeros(len(t)), 0, 0)
 
 
 def centres(cells, length=100.0):

@@ -5,10 +5,13 @@ import pandas as pd
 import pytest
 
 from bcre_studies.comparison.compare import refine
-from bcre_studies.comparison.difference import relative_difference, sample
+from bcre_studies.comparison.difference import relative_difference
 from bcre_studies.comparison.error import SHARE, relative_error
 from bcre_studies.comparison.verdict import Verdict
-from bcre_studies.models.simulate import effective_problem_of, rule_of, run_automaton
+from bcre_studies.models.automaton import rule_of
+from bcre_studies.models.effective import effective
+from bcre_studies.models.registry import AUTOMATON
+from bcre_studies.models.run import Run
 from bcre_studies.scenes.scene import load
 from bcre_studies.validation import paper_figures
 from bcre_studies.validation.paper_figures import TOLERANCE, figure_scene
@@ -52,12 +55,11 @@ def test_difference_of_figures_2_and_3_is_the_automatons_own_diffusion(case):
 def test_difference_of_figure_1_in_mid_climb_is_both_effective_coefficients(refinement):
     scene = figure_scene("figure1", refinement)
     x, times = scene.centres(), [250.0]
-    automaton = run_automaton(scene, times).R[-1]
+    automaton = AUTOMATON.run(scene, times).R[-1]
     refined = refine(
-        scene,
-        effective_problem_of(scene),
+        effective(scene),
         times,
-        lambda run: sample(run, x),
+        lambda run: run.sample(x),
         automaton,
         TOLERANCE,
         coarsest=200 if refinement == 4 else 100,
@@ -142,5 +144,5 @@ def test_climb_time_is_that_of_a_scarp_of_constant_speed():
     R = np.tile(np.exp(-(((x - 85.5) / 3) ** 2)), (t.size, 1))
     scene = paper_figures.load("figure1")
     h = scene.initial(x)[0] - depth
-    run = paper_figures.Run("ca", scene, x, t, h, R, 0 * t, 1, 0.0)
+    run = Run(scene, x, t, h, R, 0 * t, 1, 1)
     assert paper_figures.climb_time(run) == pytest.approx(0.8 * 85.5 / 0.5, rel=0.02)

@@ -9,7 +9,7 @@ import pytest
 
 import bcre_ca
 from bcre_studies.comparison.verdict import Verdict
-from bcre_studies.models.simulate import rule_of
+from bcre_studies.models.automaton import rule_of
 from bcre_studies.observables.outcome import slope
 from bcre_studies.scenes.scene import load
 from bcre_studies.validation import printed_rule as study
@@ -91,19 +91,19 @@ def test_caption_is_not_met_by_what_did_not_happen():
         scene = load(figure)
         start = bcre_ca.Pile(*scene.initial(scene.centres()))
         (end,) = bcre_ca.frames(start, rule_of(scene), [scene.time.until * 5])
-        assert not study.caption(scene, start, start)
+        assert not study.caption(figure, start, start)
         negative = np.where(np.arange(end.R.size) == 7, -1e-9, end.R)
-        assert not study.caption(scene, start, replace(end, R=negative))
+        assert not study.caption(figure, start, replace(end, R=negative))
 
 
 def test_figure_3_needs_a_change_uphill_of_the_pulse():
     scene = load("figure3")
     start = bcre_ca.Pile(*scene.initial(scene.centres()))
     (end,) = bcre_ca.frames(start, rule_of(scene), [scene.time.until])
-    assert study.caption(scene, start, end)
+    assert study.caption("figure3", start, end)
     uphill = scene.centres() < 50
     h = np.where(uphill, start.h, end.h)
-    assert not study.caption(scene, start, replace(end, h=h))
+    assert not study.caption("figure3", start, replace(end, h=h))
 
 
 def test_verdicts_turn_with_the_captions():

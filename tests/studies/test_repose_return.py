@@ -3,9 +3,8 @@
 import pandas as pd
 import pytest
 
-import bcre_pde
 from bcre_studies.comparison.verdict import Verdict
-from bcre_studies.models.simulate import problem_of, run_automaton
+from bcre_studies.models.registry import AUTOMATON, BCRE
 from bcre_studies.observables.outcome import slope
 from bcre_studies.validation.repose_return import study as repose_return
 from bcre_studies.validation.repose_return.repeated_pulses import slopes_of_automaton, slopes_of_pde
@@ -22,8 +21,8 @@ from bcre_studies.validation.repose_return.thin_pulse import slope_after_thin_pu
 def final_slopes(scene, cells=100):
     """S - Sc after the pulse, automaton and BCRE."""
     times, Sc = [scene.time.until], scene.material.Sc
-    run = run_automaton(scene, times)
-    solution = bcre_pde.solve(problem_of(scene), times, cells, tolerance=1e-4)
+    run = AUTOMATON.run(scene, times)
+    solution = BCRE.run(scene.with_changes(tolerance=1e-4), times, cells)
     return slope(run.x, run.h[-1]) - Sc, slope(solution.x, solution.h[-1]) - Sc
 
 
@@ -60,7 +59,7 @@ def test_a_slope_above_repose_is_not_brought_below_the_critical_angle_by_one_pul
 def test_the_cells_own_diffusion_decides_near_the_slope_from_which_the_avalanche_climbs_back():
     scene = scene_of(SLOW, 0.6, 2.0)
     automaton, pde = final_slopes(scene)
-    effective = bcre_pde.solve(effective_of(scene), [3000.0], 100, tolerance=1e-4)
+    effective = BCRE.run(effective_of(scene).with_changes(tolerance=1e-4), [3000.0], 100)
     assert automaton == pytest.approx(0, abs=1e-3)
     assert pde > 0.6
     assert slope(effective.x, effective.h[-1]) == pytest.approx(0.5, abs=1e-3)
@@ -71,15 +70,15 @@ def test_repeated_pulses_bring_a_slope_to_repose_from_above_and_towards_it_from_
     below = scene_of(SLOW, -0.2, 10.0).with_changes(until=1000.0)
     from_above = [
         slopes_of_automaton(above, 14),
-        slopes_of_pde(above, problem_of(above), 50, 14),
-        slopes_of_pde(above, effective_of(above), 50, 14),
+        slopes_of_pde(above, 50, 14),
+        slopes_of_pde(effective_of(above), 50, 14),
     ]
     for slopes in from_above:
         assert slopes[0] > 0.62
         assert slopes[-1] == pytest.approx(0.5, abs=1e-3)
     for slopes in (
         slopes_of_automaton(below, 8),
-        slopes_of_pde(below, problem_of(below), 50, 8),
+        slopes_of_pde(below, 50, 8),
     ):
         assert slopes == sorted(slopes)
         assert 0.3 < slopes[0] < slopes[-1] < 0.5
@@ -89,7 +88,7 @@ def test_the_first_of_repeated_pulses_is_a_single_one():
     scene = scene_of(SLOW, 0.15, 2.0).with_changes(until=1000.0)
     automaton, pde = final_slopes(scene)
     assert slopes_of_automaton(scene, 1) == pytest.approx([automaton + 0.5], abs=1e-12)
-    assert slopes_of_pde(scene, problem_of(scene), 100, 1) == pytest.approx([pde + 0.5], abs=1e-9)
+    assert slopes_of_pde(scene, 100, 1) == pytest.approx([pde + 0.5], abs=1e-9)
 
 
 def test_the_closed_form_is_repose_above_Sd_and_silent_on_thick_pulses():

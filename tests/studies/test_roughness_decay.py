@@ -5,9 +5,8 @@ import math
 import numpy as np
 import pytest
 
-import bcre_pde
 from bcre_studies.comparison.verdict import Verdict
-from bcre_studies.models.simulate import as_run, problem_of, run_automaton
+from bcre_studies.models.registry import AUTOMATON, BCRE
 from bcre_studies.observables import fronts as observe
 from bcre_studies.scenes.scene import load
 from bcre_studies.validation import roughness_decay
@@ -37,7 +36,7 @@ def rate_of_smoothing(waves, d, dt):
 @pytest.mark.parametrize("waves", [3, 9, 25])
 @pytest.mark.parametrize(("d", "dt"), [(1.0, 0.8), (0.5, 0.8)])
 def test_the_automaton_smooths_the_surface_at_its_closed_form(waves, d, dt):
-    run = run_automaton(surface_scene(d, dt), [0.0, SPAN])
+    run = AUTOMATON.run(surface_scene(d, dt), [0.0, SPAN])
     expected = rate_of_smoothing(waves, d, dt)
     assert -surface_rate(run, waves).real == pytest.approx(expected, rel=1e-3)
 
@@ -45,7 +44,7 @@ def test_the_automaton_smooths_the_surface_at_its_closed_form(waves, d, dt):
 @pytest.mark.parametrize("waves", [3, 9, 25])
 def test_bcre_without_kappa_carries_the_surface_uphill_and_does_not_smooth_it(waves):
     scene = surface_scene(1.0, 0.8)
-    run = as_run(scene, bcre_pde.solve(problem_of(scene), [0.0, SPAN], 400))
+    run = BCRE.run(scene, [0.0, SPAN], 400)
     rate = surface_rate(run, waves)
     assert abs(rate.real) < 0.003 * rate_of_smoothing(waves, 1.0, 0.8)
     assert rate.imag / (2 * math.pi * waves / 100) == pytest.approx(GAMMA * R0, rel=1e-3)
@@ -55,7 +54,7 @@ def test_kappa_eff_is_half_a_cell_of_gamma_less_the_courant_number():
     d, dt, waves = 1.0, 0.8, 6
     scene = surface_scene(d, dt)
     kappa = GAMMA * d / 2 * (1 - GAMMA * R0 * dt / d)
-    run = as_run(scene, bcre_pde.solve(problem_of(scene, kappa=kappa), [0.0, SPAN], 400))
+    run = BCRE.run(scene.with_changes(kappa=kappa), [0.0, SPAN], 400)
     smoothing = -surface_rate(run, waves).real
     assert smoothing == pytest.approx(kappa * R0 * (2 * math.pi * waves / 100) ** 2, rel=1e-3)
     assert smoothing == pytest.approx(rate_of_smoothing(waves, d, dt), rel=0.02)

@@ -7,7 +7,8 @@ import pandas as pd
 import pytest
 
 from bcre_studies.comparison.verdict import Verdict
-from bcre_studies.models.simulate import rule_of, run_automaton
+from bcre_studies.models.automaton import rule_of
+from bcre_studies.models.registry import AUTOMATON
 from bcre_studies.observables import named as observables
 from bcre_studies.performance.scene_needs import ablation, smallest
 from bcre_studies.performance.scene_needs import study as scene_needs
@@ -30,7 +31,7 @@ def change(scene, name, *without):
 def test_full_model_is_the_automaton_as_the_scene_stands(name):
     scene = load(name)
     trial = ablation.run(scene, Model())
-    run = run_automaton(scene, ablation.recorded_times(scene))
+    run = AUTOMATON.run(scene, ablation.recorded_times(scene))
     assert np.array_equal(trial.record.R, run.R)
     assert np.array_equal(trial.record.h, run.h)
     assert trial.cell_steps == run.steps * scene.domain.cells

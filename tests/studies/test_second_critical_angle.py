@@ -6,6 +6,7 @@ import pytest
 import bcre_pde
 from bcre_ca.theory import second_critical_excess
 from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE
 from bcre_studies.observables.outcome import Outcome
 from bcre_studies.validation.second_critical_angle import study as second_critical_angle
 from bcre_studies.validation.second_critical_angle.climb import Bracket, climb, threshold
@@ -70,23 +71,23 @@ def test_Sd_of_a_layer_that_is_not_carried_is_refused():
 def test_between_the_thresholds_only_what_has_the_cells_diffusion_climbs(
     excess, pulse, automaton, pde, effective
 ):
-    assert climb("ca", 100, excess, pulse) is automaton
-    assert climb("pde", 100, excess, pulse) is pde
-    assert climb("pde effective", 100, excess, pulse) is effective
+    assert climb(AUTOMATON, 100, excess, pulse) is automaton
+    assert climb(BCRE, 100, excess, pulse) is pde
+    assert climb(EFFECTIVE, 100, excess, pulse) is effective
 
 
 def test_a_finite_pulse_climbs_at_less_than_an_infinitesimal_one():
     whole = Bracket(0.5, 2.75)
-    small, large = (threshold("ca", (100,), pulse, whole) for pulse in (1e-7, 5.0))
+    small, large = (threshold(AUTOMATON, (100,), pulse, whole) for pulse in (1e-7, 5.0))
     assert small.value == pytest.approx(1.715729, rel=0.025)
     assert large.high < 0.6 * small.low
 
 
 def test_a_threshold_must_hold_on_every_grid():
     whole = Bracket(0.5, 2.75)
-    coarse = threshold("ca", (100,), 1.0, whole)
-    both = threshold("ca", (100, 200), 1.0, whole)
-    fine = threshold("ca", (200,), 1.0, whole)
+    coarse = threshold(AUTOMATON, (100,), 1.0, whole)
+    both = threshold(AUTOMATON, (100, 200), 1.0, whole)
+    fine = threshold(AUTOMATON, (200,), 1.0, whole)
     assert both.low <= coarse.value <= both.high < 1.02 * fine.value
     assert both.error > coarse.error
 

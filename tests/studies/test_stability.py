@@ -13,7 +13,7 @@ from bcre_studies.verification.stability.study import (
     CLIMB_AND_DRIFT,
     DRIFT_AND_SPREAD,
     VARIANTS,
-    Case,
+    Diagram,
 )
 
 CELLS, WAVES = 120, 7
@@ -94,14 +94,14 @@ def test_a_thick_layer_shortens_the_step_of_a_sweep_downhill_only():
 def test_small_planes_are_measured_predicted_and_accepted_alike(monkeypatch):
     monkeypatch.setattr(stability, "POINTS", 8)
     monkeypatch.setattr(stability, "RAYS", 3)
-    row, rays, points = stability._measure(Case("ca", RIGHT, CLIMB_AND_DRIFT))
+    row, rays, points = stability._measure(Diagram("ca", RIGHT, CLIMB_AND_DRIFT))
     assert row["points"] == 64
     assert row["predicted_stable_but_grows"] == row["accepted_but_grows"] == 0
     assert row["distance_percent"] <= 2
     assert row["verdict"] == Verdict.AGREE
     assert sum(line["stable"].count("0") for line in points) == row["grow"] == row["refused"]
     assert all(ray["bound"] == pytest.approx(ray["predicted"], rel=0.01) for ray in rays)
-    row, _, _ = stability._measure(Case("pde", "DOP853", DRIFT_AND_SPREAD))
+    row, _, _ = stability._measure(Diagram("pde", "DOP853", DRIFT_AND_SPREAD))
     assert row["predicted_stable_but_grows"] > 0 == row["accepted_but_grows"]
     assert row["verdict"] == Verdict.DISAGREE
 

@@ -10,7 +10,7 @@ import bcre_ca.theory
 import bcre_pde
 import bcre_pde.theory
 from bcre_studies.comparison.verdict import Verdict
-from bcre_studies.models.simulate import as_run, effective_problem_of, problem_of, run_automaton
+from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE
 from bcre_studies.observables import fronts as observe
 from bcre_studies.scenes.scene import load
 from bcre_studies.validation import uphill_propagation
@@ -34,7 +34,7 @@ def front_speed(run):
 @pytest.mark.parametrize("d", [1.0, 0.4])
 @pytest.mark.parametrize("excess", [0.8, 2.3])
 def test_the_automatons_front_moves_at_its_own_closed_form(excess, d):
-    run = run_automaton(release_scene(excess, d), TIMES)
+    run = AUTOMATON.run(release_scene(excess, d), TIMES)
     expected = bcre_ca.theory.uphill_front_speed(V, D, GAMMA * excess, d, 0.3 * d)
     assert front_speed(run) == pytest.approx(expected, abs=0.002 * (V + abs(expected)))
 
@@ -42,7 +42,7 @@ def test_the_automatons_front_moves_at_its_own_closed_form(excess, d):
 @pytest.mark.parametrize("excess", [0.8, 2.3])
 def test_the_front_of_bcre_moves_at_twice_the_root_of_D_sigma_less_v(excess):
     scene = release_scene(excess, 1.0)
-    run = as_run(scene, bcre_pde.solve(problem_of(scene), TIMES, 240))
+    run = BCRE.run(scene, TIMES, 240)
     expected = 2 * math.sqrt(D * GAMMA * excess) - V
     assert front_speed(run) == pytest.approx(expected, abs=0.002 * (V + expected))
 
@@ -51,8 +51,8 @@ def test_between_the_two_critical_slopes_only_the_automaton_climbs():
     excess = 1.3
     assert bcre_ca.theory.second_critical_excess(V, D, GAMMA, 1.0) < excess < V**2 / (4 * D * GAMMA)
     scene = release_scene(excess, 1.0)
-    pde = as_run(scene, bcre_pde.solve(problem_of(scene), TIMES, 240))
-    assert front_speed(run_automaton(scene, TIMES)) > 0.002
+    pde = BCRE.run(scene, TIMES, 240)
+    assert front_speed(AUTOMATON.run(scene, TIMES)) > 0.002
     assert front_speed(pde) < -0.002
 
 
@@ -70,9 +70,9 @@ def test_the_automatons_scarp_is_as_fast_as_that_of_bcre_with_its_own_coefficien
         **{"surface.0.slope": 1.6, "rolling.0.amplitude": 100.0, "rolling.0.centre": 60.0},
     )
     times = np.arange(0.0, 271.0, 2.0)
-    own = as_run(scene, bcre_pde.solve(effective_problem_of(scene), times, 140))
+    own = EFFECTIVE.run(scene, times, 140)
     speed, law = observe.scarp_speed(own, 45.0), bcre_pde.theory.scarp_speed(0.12, 0.01, 45.0)
-    assert observe.scarp_speed(run_automaton(scene, times), 45.0) == pytest.approx(speed, rel=0.03)
+    assert observe.scarp_speed(AUTOMATON.run(scene, times), 45.0) == pytest.approx(speed, rel=0.03)
     assert 0.6 * law < speed < 0.9 * law
 
 

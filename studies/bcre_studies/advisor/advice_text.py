@@ -17,16 +17,11 @@ from bcre_studies.advisor.pilot import with_model
 from bcre_studies.advisor.question import Question
 from bcre_studies.advisor.scene_text import scene_text
 from bcre_studies.comparison.rounding import significant
-from bcre_studies.running.run import COARSEST, require_runnable
+from bcre_studies.models.bcre import COARSEST
+from bcre_studies.models.registry import AUTOMATON, BCRE, CANDIDATES, SCHEMES
+from bcre_studies.running.run import require_runnable
 from bcre_studies.system.files import replace_text, require_writable
 from bcre_studies.timing.costs import recorded
-
-NAMES = {
-    "upwind": "automaton, upwind",
-    "calibrated": "automaton, calibrated",
-    "limited": "automaton, flux-limited",
-    "pde": "BCRE on py-pde",
-}
 
 
 def answer(question: Question, scene: str, path: Path) -> str:
@@ -42,7 +37,7 @@ def answer(question: Question, scene: str, path: Path) -> str:
         where the scene cannot be run; OSError where the file cannot be written.
     """
     require_writable("--out", path.parent, (path.name,))
-    require_runnable(with_model(question.scene, "pde", COARSEST), "pde", question.frames)
+    require_runnable(with_model(question.scene, BCRE.name, COARSEST), BCRE.name, question.frames)
     console = Console(stderr=True)
     with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
         task = progress.add_task("pilots", total=None)
@@ -71,7 +66,7 @@ def write_advised(advice: Advice, path: Path) -> None:
         return
     best, question = advice.options[0], advice.question
     advised = with_model(question.scene, best.model, best.cells)
-    comment = f"Advised for {question.observable}: {NAMES[best.model]}, {best.cells} cells."
+    comment = f"Advised for {question.observable}: {_option(best)}."
     replace_text(path, scene_text(advised, path.parent, comment))
 
 
@@ -89,13 +84,13 @@ def _lines(advice: Advice, scene: str, path: Path) -> Iterator[str]:
         name = "runner-up:" if place == 0 else "left out:"
         yield f"{name:16}{_option(option)}{_against(advice, option)}"
     for model, why in advice.left_out.items():
-        yield f"left out:       {NAMES[model]}: {why}"
+        yield f"left out:       {CANDIDATES[model].label}: {why}"
     if math.isfinite(advice.reference_error):
         known = f"its own error {_percent(advice.reference_error)}"
         yield f"reference:      BCRE on {advice.reference_cells} cells, {known}"
     yield f"pilots:         {advice.pilots_s:.2g} s"
     if advice.options:
-        model = "pde" if advice.options[0].model == "pde" else "ca"
+        model = AUTOMATON.name if advice.options[0].model in SCHEMES else BCRE.name
         yield f"wrote:          {path}"
         command = f"bcre run {shlex.quote(str(path))} --model {model}{_frames(question)}"
         yield f"run it:         {command}"
@@ -126,7 +121,7 @@ def _recommended(advice: Advice, best: Option) -> Iterator[str]:
 
 
 def _option(option: Option) -> str:
-    return f"{NAMES[option.model]}, {option.cells} cells"
+    return f"{CANDIDATES[option.model].label}, {option.cells} cells"
 
 
 def _against(advice: Advice, option: Option) -> str:

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import bcre_pde
-from bcre_studies.advisor.candidate import MODELS, SAFETY, SCHEMES, Candidate
+from bcre_studies.advisor.candidate import SAFETY, Candidate
 from bcre_studies.advisor.closed_forms import ClosedForm, closed_form
 from bcre_studies.advisor.deviation import deviation
 from bcre_studies.advisor.options import PRECISE, Option, confirmed, predicted_seconds
@@ -31,7 +31,8 @@ from bcre_studies.advisor.pilot import (
     warm_up,
 )
 from bcre_studies.advisor.question import Question
-from bcre_studies.models.simulate import problem_of
+from bcre_studies.models.bcre import problem_of
+from bcre_studies.models.registry import BCRE, CANDIDATES, SCHEMES
 from bcre_studies.timing.costs import Costs, closures_of
 
 RESOLVED, USABLE = 0.1, 0.25
@@ -129,14 +130,14 @@ def _full_reference(question: Question, costs: Costs) -> float:
         problem_of(scene).material, scene.domain.length / FINEST, float(R.max())
     )
     return costs.seconds(
-        "pde", FINEST, scene.time.until / step, closures_of(scene), question.frames
+        BCRE.name, FINEST, scene.time.until / step, closures_of(scene), question.frames
     )
 
 
 def _reference(question: Question, effort: Effort, allowance: Allowance) -> Reference:
     scene = question.scene
     if effort.clocked:
-        for model in MODELS:
+        for model in CANDIDATES:
             effort.tell(f"{model}, compiling")
             warm_up(scene, model)
     wanted = RESOLVED * question.tolerance

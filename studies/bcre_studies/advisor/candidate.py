@@ -17,12 +17,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import nnls
 
+from bcre_studies.models.registry import CANDIDATES
 from bcre_studies.scenes.domain import Array
 
-SCHEMES = ("upwind", "calibrated", "limited")
-MODELS = (*SCHEMES, "pde")
-
-ORDER = {"upwind": 1.0, "calibrated": 2.0, "limited": 2.0, "pde": 5.0}
+ORDER = dict(zip(CANDIDATES, (1.0, 2.0, 2.0, 5.0), strict=True))
 """The order that a model can reach where the layers are smooth."""
 
 LEAST_ORDER = 0.3

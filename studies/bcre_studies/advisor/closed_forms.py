@@ -22,9 +22,8 @@ from functools import cache
 
 import numpy as np
 
-import bcre_pde
 from bcre_pde.exact import breaking_time, climbing_wave, climbing_wave_surface
-from bcre_studies.models.simulate import Run, as_run, problem_of
+from bcre_studies.models.run import Run
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene
 from bcre_studies.scenes.terms import Gaussian, Incline, Uniform
@@ -54,10 +53,7 @@ class ClosedForm:
         x = scene.centres(cells)
         h, R = (np.array(rows) for rows in zip(*(self.layers(x, t) for t in times), strict=True))
         area = (h + R).sum(axis=1) * scene.domain.length / cells
-        solution = bcre_pde.Solution(
-            problem_of(scene), x, np.array(times), h, R, area[0] - area, 0, 0, 0.0
-        )
-        return as_run(scene, solution)
+        return Run(scene, x, np.array(times), h, R, area[0] - area, steps=0, evaluations=0)
 
 
 def closed_form(scene: Scene) -> ClosedForm | None:

@@ -13,10 +13,8 @@ import math
 import numpy as np
 
 from bcre_pde import grid_convergence_index
-from bcre_studies.comparison.difference import sample
-from bcre_studies.models.simulate import Run
+from bcre_studies.models.run import Run
 from bcre_studies.observables import named as observables
-from bcre_studies.observables.named import Record
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene
 
@@ -39,7 +37,7 @@ def deviation(run: Run, reference: Run, observable: str = "R") -> float:
     observable: one of :data:`OBSERVABLES`.
     """
     if observable not in ("R", "h"):
-        return observables.change(observable, _record(reference), _record(run))
+        return observables.change(observable, reference, run)
     profile = _rolling if observable == "R" else _change
     scale = float(np.mean(np.abs(profile(reference, reference.x))))
     gap = float(np.mean(np.abs(profile(run, run.x) - profile(reference, run.x))))
@@ -61,12 +59,8 @@ def uncertainty(fine: Run, medium: Run, coarse: Run, observable: str = "R") -> f
 
 
 def _rolling(run: Run, x: Array) -> Array:
-    return sample(run, x, "R")
+    return run.sample(x)
 
 
 def _change(run: Run, x: Array) -> Array:
-    return sample(run, x, "u") - sample(run, x, "u", frame=0)
-
-
-def _record(run: Run) -> Record:
-    return Record(run.scene, run.x, run.t, run.h, run.R)
+    return run.sample(x, "u") - run.sample(x, "u", frame=0)

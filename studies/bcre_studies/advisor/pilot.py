@@ -16,9 +16,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import bcre_pde
-from bcre_studies.advisor.candidate import SCHEMES, Candidate, Pilot
+from bcre_studies.advisor.candidate import Candidate, Pilot
 from bcre_studies.advisor.deviation import deviation, uncertainty
-from bcre_studies.models.simulate import Run, as_run, problem_of, rule_of, run_automaton
+from bcre_studies.models.automaton import rule_of
+from bcre_studies.models.bcre import problem_of
+from bcre_studies.models.registry import BCRE, CANDIDATES, SCHEMES
+from bcre_studies.models.run import Run
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene
 from bcre_studies.scenes.terms import Gaussian
@@ -104,10 +107,10 @@ class Allowance:
 
 def with_model(scene: Scene, model: str, cells: int) -> Scene:
     """The scene on so many cells of a model, the automaton with a step that follows its bounds."""
+    changed = CANDIDATES[model].adapter().on(scene, cells)
     if model in SCHEMES:
-        return scene.with_changes(cells=cells, step="auto", scheme=model)
-    solver = {"solver.cells": cells, "solver.method": "runge-kutta", "solver.tolerance": 1e-6}
-    return scene.with_changes(**solver)
+        return changed
+    return changed.with_changes(method="runge-kutta", tolerance=1e-6)
 
 
 def run_model(
@@ -118,9 +121,7 @@ def run_model(
     stop: Callable[[object], bool] | None = None,
 ) -> Run:
     """The scene in a model on so many cells, recorded at the given times."""
-    if model in SCHEMES:
-        return run_automaton(with_model(scene, model, cells), times, stop)
-    return as_run(scene, bcre_pde.solve(problem_of(scene), times, cells, stop=stop))
+    return CANDIDATES[model].run(with_model(scene, model, cells), times, stop=stop)
 
 
 def warm_up(scene: Scene, model: str) -> None:
@@ -168,7 +169,7 @@ class Reference:
     def candidate(self, observable: str) -> Candidate:
         """BCRE itself as one of the models; the error of its finest pilot is the reference's."""
         errors = [deviation(run, self.run, observable) for run in self.runs[:-1]]
-        return Candidate("pde", _pilots(self.runs, [*errors, self.error]))
+        return Candidate(BCRE.name, _pilots(self.runs, [*errors, self.error]))
 
 
 def reference(
@@ -184,13 +185,13 @@ def reference(
     runs: list[Run] = []
     cells, error = COARSEST, math.inf
     while cells <= FINEST and error > wanted:
-        steps = _next_steps(scene, "pde", runs, cells)
-        expected = allowance.expected(scene, "pde", cells, steps, len(times))
+        steps = _next_steps(scene, BCRE.name, runs, cells)
+        expected = allowance.expected(scene, BCRE.name, cells, steps, len(times))
         needed = len(runs) < LEAST_PILOTS
         if not allowance.permits(expected, 1.0 if needed else REFERENCE_SHARE):
             break
         try:
-            runs.append(allowance.take(scene, "pde", times, cells))
+            runs.append(allowance.take(scene, BCRE.name, times, cells))
         except PilotError:
             if needed:
                 raise

@@ -19,13 +19,10 @@ from bcre_studies.comparison.difference import relative_difference
 from bcre_studies.comparison.error import allowed_error, relative_error
 from bcre_studies.comparison.rounding import DIGITS, finest_of, shown, significant
 from bcre_studies.comparison.verdict import Verdict, verdict_of
-from bcre_studies.models.simulate import (
-    Run,
-    as_run,
-    effective_problem_of,
-    problem_of,
-    run_automaton,
-)
+from bcre_studies.models.bcre import problem_of, run_of
+from bcre_studies.models.effective import effective
+from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE
+from bcre_studies.models.run import Run
 from bcre_studies.scenes.scene import Scene
 
 Measure = Callable[[Run], ArrayLike]
@@ -90,13 +87,13 @@ class Comparison:
         on_grids = bool(self.pde.cells)
         row: dict[str, Any] = {}
         if np.ndim(self.automaton) == 0:
-            row["automaton"] = shown(float(self.automaton), finest)
+            row[AUTOMATON.column] = shown(float(self.automaton), finest)
             if automaton_theory is not None:
-                row["automaton_theory"] = shown(automaton_theory, finest)
-            row |= _with_error("pde", self.pde, finest)
+                row[f"{AUTOMATON.column}_theory"] = shown(automaton_theory, finest)
+            row |= _with_error(BCRE.column, self.pde, finest)
             if pde_theory is not None:
-                row["pde_theory"] = shown(pde_theory, finest)
-            row |= _with_error("pde_effective", self.effective, finest)
+                row[f"{BCRE.column}_theory"] = shown(pde_theory, finest)
+            row |= _with_error(EFFECTIVE.column, self.effective, finest)
         row["difference"] = significant(round(self.difference, DIGITS), 3)
         if on_grids:
             row["difference_error"] = significant(relative_error(self.pde, self.scale), 1)
@@ -141,7 +138,7 @@ def compare_each(
     measure: MeasureEach,
     scales: Scales,
     tolerance: float,
-    effective: bcre_pde.Problem | None = None,
+    own: Scene | None = None,
     **refinement: Any,
 ) -> list[Comparison]:
     """Compare several numbers or profiles, measured on the same runs, each by itself.
@@ -151,14 +148,13 @@ def compare_each(
     scene, times, tolerance, refinement: as for :func:`compare`.
     measure: the quantities of a run.
     scales: what the difference of each is relative to, see :class:`Comparison`.
-    effective: BCRE with the automaton's coefficients, where they are not those of
-        :func:`bcre_studies.models.simulate.effective_problem_of`.
+    own: the scene with the automaton's own coefficients, where they are not those of
+        :func:`bcre_studies.models.effective.effective`.
     """
-    automaton = measure(run_automaton(scene, times))
-    problems = problem_of(scene), effective or effective_problem_of(scene)
+    automaton = measure(AUTOMATON.run(scene, times))
     in_both = [
-        refine_each(scene, problem, times, measure, automaton, scales, tolerance, **refinement)
-        for problem in problems
+        refine_each(solved, times, measure, automaton, scales, tolerance, **refinement)
+        for solved in (scene, own or effective(scene))
     ]
     return [
         Comparison(value, nominal, with_own, tolerance, scale)
@@ -168,7 +164,6 @@ def compare_each(
 
 def refine_each(
     scene: Scene,
-    problem: bcre_pde.Problem,
     times: Sequence[float],
     measure: MeasureEach,
     automaton: Sequence[Any],
@@ -185,13 +180,16 @@ def refine_each(
         ]
 
     return bcre_pde.solve_refined_each(
-        problem, times, lambda solution: measure(as_run(scene, solution)), allowed, **refinement
+        problem_of(scene),
+        times,
+        lambda solution: measure(run_of(scene, solution)),
+        allowed,
+        **refinement,
     )
 
 
 def refine(
     scene: Scene,
-    problem: bcre_pde.Problem,
     times: Sequence[float],
     measure: Measure,
     automaton: ArrayLike,
@@ -201,7 +199,6 @@ def refine(
     """:func:`refine_each` of a single quantity, compared by its own size."""
     (measured,) = refine_each(
         scene,
-        problem,
         times,
         lambda run: [measure(run)],
         [automaton],

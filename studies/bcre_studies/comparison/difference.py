@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bcre_studies.models.simulate import Run
+from bcre_studies.models.run import Run
 from bcre_studies.scenes.domain import Array
 
 

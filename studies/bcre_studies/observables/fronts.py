@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.interpolate import BarycentricInterpolator
 
-from bcre_studies.models.simulate import Run
+from bcre_studies.models.run import Run
 from bcre_studies.scenes.domain import Array
 
 SMALLEST = 1e-320

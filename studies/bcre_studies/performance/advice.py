@@ -24,26 +24,25 @@ import numpy as np
 import pandas as pd
 
 from bcre_studies.advisor.advise import Advice, Effort, advise
-from bcre_studies.advisor.candidate import MODELS, SCHEMES
 from bcre_studies.advisor.deviation import deviation, uncertainty
 from bcre_studies.advisor.pilot import run_model
 from bcre_studies.advisor.question import Question
 from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict
-from bcre_studies.models.simulate import Run, frame_times
-from bcre_studies.performance.random_scenes import random_scene
+from bcre_studies.models.registry import BCRE, CANDIDATES, SCHEMES
+from bcre_studies.models.run import Run, frame_times
+from bcre_studies.performance.random_scenes import kind_of, random_scene
 from bcre_studies.performance.record.record import read
 from bcre_studies.reporting import style
 from bcre_studies.scenes.listing import built_in_names
 from bcre_studies.scenes.scene import Scene, load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 from bcre_studies.timing.costs import closures_of, recorded
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-READS_RECORD = True  # the costs
 SCENES = 60
 TOLERANCE = 0.05
 FRAMES = 3
@@ -60,25 +59,11 @@ PILOTS_S = 3.0
 """Seconds of pilots a scene, by the recorded costs."""
 OWN = "two_pulses"
 LADDER = {
-    model: [round(smallest * 2 ** (k / 4)) for k in range(steps)]
-    for model, smallest, steps in (
-        ("upwind", 25, 33),
-        ("calibrated", 25, 25),
-        ("limited", 25, 21),
-        ("pde", 25, 17),
-    )
+    model: [round(25 * 2 ** (k / 4)) for k in range(steps)]
+    for model, steps in zip(CANDIDATES, (33, 25, 21, 17), strict=True)
 }
 """Cells tried of every model to find its cheapest: up to 6400, 1600, 800 and 400."""
 
-LOOKS = {
-    model: {"color": color, "marker": mark, "linestyle": ""}
-    for model, color, mark in (
-        ("upwind", "#b5480f", "o"),
-        ("calibrated", "#c9962b", "D"),
-        ("limited", "#7a5ea8", "v"),
-        ("pde", "#1f5a99", "s"),
-    )
-}
 FEW = 100
 """Cells of the finest pilot of the extrapolated predictions."""
 
@@ -108,10 +93,10 @@ def truth(scene: Scene) -> Truth:
     """BCRE on doubled grids until all that is observed is resolved, or the finest is reached."""
     times = frame_times(scene, FRAMES)
     cells = COARSEST_TRUTH
-    runs = [run_model(scene, "pde", times, n) for n in (cells, 2 * cells)]
+    runs = [run_model(scene, BCRE.name, times, n) for n in (cells, 2 * cells)]
     while True:
         cells = 2 * runs[-1].x.size
-        runs = [*runs[-2:], run_model(scene, "pde", times, cells)]
+        runs = [*runs[-2:], run_model(scene, BCRE.name, times, cells)]
         found = Truth((runs[0], runs[1], runs[2]))
         if cells >= FINEST_TRUTH or all(map(found.resolved, OBSERVED)):
             return found
@@ -174,7 +159,7 @@ def _advised(index: int, scene: Scene, observable: str, true: Truth) -> dict[str
     resolved = true.resolved(observable)
     row: dict[str, Any] = {
         "scene": index,
-        "kind": scene.title.rsplit(" ", 1)[-1],
+        "kind": kind_of(scene),
         "observable": observable,
         "model": "",
         "cells": 0,
@@ -223,7 +208,7 @@ def _all_models(name: str) -> list[dict[str, Any]]:
     true = truth(scene)
     if not true.resolved("R"):
         return [_unjudged(name, scene)]
-    cheapest = [(model, *found) for model in MODELS if (found := _least(scene, model, true))]
+    cheapest = [(model, *found) for model in CANDIDATES if (found := _least(scene, model, true))]
     best = _advice(scene, "R").options[0]
     advised = run_model(scene, best.model, frame_times(scene, FRAMES), best.cells)
     error = deviation(advised, true.run)
@@ -367,10 +352,11 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
         ends = np.array([1e-5, 0.3])
         axis.loglog(ends, ends, color="0.55", linewidth=1.0)
         axis.axhline(TOLERANCE, color="0.55", linestyle=":", linewidth=1.0)
-        for model, look in LOOKS.items():
-            rows = table[table["model"] == model]
+        for name, model in CANDIDATES.items():
+            rows = table[table["model"] == name]
             if len(rows):
-                axis.loglog(rows["predicted_error"], rows["true_error"], label=model, **look)
+                look = model.markers(label=name)
+                axis.loglog(rows["predicted_error"], rows["true_error"], **look)
         axis.set_title(title, loc="left")
         axis.set_xlabel("predicted error")
         axis.set_ylabel("true error")

@@ -23,7 +23,6 @@ from bcre_studies.reporting import style
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-READS_RECORD = True
 PAPERS_CELLS = 100
 """Cells of d = 1, as in the paper, of a slope as long as our scenes of its figures."""
 

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import fcntl
 import glob
 import os
-import shutil
+import secrets
 import sys
-import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
+
+from filelock import FileLock, Timeout
 
 _HERE = Path(__file__).resolve().parents[3]
 
@@ -32,92 +32,46 @@ def replace_file(path: Path, write: Callable[[Path], None]) -> None:
     OSError
         naming the file and the reason where it cannot be written; what was there stays.
     """
+    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         sweep(path.parent, glob.escape(path.name))
-        with _temporary(path) as (handle, temporary):
-            write(temporary)
-            temporary.chmod(0o644)
-            os.fsync(handle)
-            temporary.replace(path)
+        with FileLock(temporary, mode=0o644):  # creates it; held for as long as its writer lives
+            try:
+                write(temporary)
+                with temporary.open("rb+") as file:
+                    os.fsync(file.fileno())
+                temporary.replace(path)
+            finally:
+                temporary.unlink(missing_ok=True)
     except OSError as error:
         raise OSError(f"{path}: cannot be written: {error.strerror or error}") from error
 
 
-@contextmanager
-def _temporary(path: Path) -> Iterator[tuple[int, Path]]:
-    """An open file beside ``path``, locked for as long as its writer lives, and its name."""
-    while True:
-        handle, name = tempfile.mkstemp(".part", f".{path.name}.", path.parent)
-        fcntl.flock(handle, fcntl.LOCK_EX)
-        if os.fstat(handle).st_nlink:
-            break
-        os.close(handle)  # swept away by another run before it was locked
-    try:
-        yield handle, Path(name)
-    finally:
-        Path(name).unlink(missing_ok=True)
-        os.close(handle)
-
-
 def sweep(folder: Path, pattern: str) -> None:
-    """Remove temporary files, of names like ``pattern``, whose writers are dead.
-
-    A living writer holds the lock of its file; that of a dead one is free.
-    """
+    """Remove temporary files, of names like ``pattern``, whose writers are dead."""
     for leftover in folder.glob(f".{pattern}.*.part"):
-        with suppress(OSError), leftover.open("rb") as file:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        with suppress(OSError), FileLock(leftover, blocking=False):  # a living writer has it locked
             leftover.unlink()
 
 
 @contextmanager
-def workshop(folder: Path, waiting: str) -> Iterator[None]:
-    """Hold ``folder`` alone, and remove it at the end.
+def alone(lock: Path, waiting: str) -> Iterator[None]:
+    """Hold the file ``lock``, which stays.
 
     A second run waits, after saying ``waiting``, until the first has ended, however it ends.
-    After an exception or a kill what is in the folder stays, for the next run to take over.
     """
-    handle = _lock(folder, waiting)
+    lock.parent.mkdir(parents=True, exist_ok=True)
+    held = FileLock(lock)
+    try:
+        held.acquire(blocking=False)
+    except Timeout:
+        print(waiting, file=sys.stderr, flush=True)
+        held.acquire()
     try:
         yield
-        shutil.rmtree(folder, ignore_errors=True)
     finally:
-        with suppress(OSError):
-            folder.rmdir()  # where nothing was finished
-        os.close(handle)
-
-
-def _lock(folder: Path, waiting: str) -> int:
-    while True:
-        folder.mkdir(parents=True, exist_ok=True)
-        with suppress(FileNotFoundError):  # its last holder was done and removed it
-            handle = os.open(folder, os.O_RDONLY)
-            try:
-                _lock_patiently(handle, waiting)
-                if os.path.samestat(folder.stat(), os.fstat(handle)):
-                    return handle
-            except BaseException:
-                os.close(handle)
-                raise
-            os.close(handle)
-
-
-def _lock_patiently(handle: int, waiting: str) -> None:
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        print(waiting, file=sys.stderr, flush=True)
-        fcntl.flock(handle, fcntl.LOCK_EX)
-
-
-def remove_abandoned(folder: Path) -> None:
-    """Remove a folder of :func:`workshop` that nobody holds."""
-    handle = os.open(folder, os.O_RDONLY)
-    with suppress(BlockingIOError):
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        shutil.rmtree(folder, ignore_errors=True)
-    os.close(handle)
+        held.release()
 
 
 def require_writable(key: str, folder: Path, names: Sequence[str] = ()) -> None:

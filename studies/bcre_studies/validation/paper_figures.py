@@ -26,27 +26,20 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-import bcre_pde
 from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.compare import Measure, compare, refine
-from bcre_studies.comparison.difference import relative_difference, sample
+from bcre_studies.comparison.difference import relative_difference
 from bcre_studies.comparison.error import relative_error
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict
-from bcre_studies.models.simulate import (
-    Run,
-    as_run,
-    effective_problem_of,
-    frame_times,
-    problem_of,
-    profiles,
-    run_automaton,
-)
+from bcre_studies.models.effective import effective
+from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED, MODELS
+from bcre_studies.models.run import Run, frame_times, profiles
 from bcre_studies.observables.fronts import scarps
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -96,11 +89,11 @@ def _compare_case(case: tuple[str, int]) -> dict[str, Any]:
     x, times, grids = scene.centres(), [scene.time.until], {"coarsest": 200, "finest": 800}
 
     def measure(run: Run) -> Array:
-        return sample(run, x)
+        return run.sample(x)
 
     result = compare(scene, times, measure, TOLERANCE, **grids)
-    problem = effective_problem_of(scene, with_curvature=False)
-    spread = refine(scene, problem, times, measure, result.automaton, TOLERANCE, **grids)
+    with_D_eff = effective(scene, with_curvature=False)
+    spread = refine(with_D_eff, times, measure, result.automaton, TOLERANCE, **grids)
     return {
         "quantity": PROFILE,
         "case": name,
@@ -119,7 +112,7 @@ def _of_schemes(
 ) -> dict[str, float]:
     """Relative difference of the automaton from BCRE as it stands, in its other schemes."""
     runs = {
-        scheme: run_automaton(scene.with_changes(scheme=scheme, step="auto"), times)
+        scheme: AUTOMATON.run(scene.with_changes(scheme=scheme, step="auto"), times)
         for scheme in SCHEMES
     }
     return {
@@ -154,17 +147,11 @@ def climb_time(run: Run) -> float:
 
 
 def _profiles(name: str) -> pd.DataFrame:
-    """Frames of both models; the PDE on 400 cells, four times the automaton's."""
+    """Frames of the models; BCRE on 400 cells, four times the automaton's."""
     scene = figure_scene(name, 1)
     times = frame_times(scene, FRAMES)
-    solutions = {
-        "pde": bcre_pde.solve(problem_of(scene), times, 400),
-        "pde effective": bcre_pde.solve(effective_problem_of(scene), times, 400),
-    }
-    runs = {"ca": run_automaton(scene, times)} | {
-        label: as_run(scene, solution) for label, solution in solutions.items()
-    }
-    return pd.concat([profiles(run, figure=name, model=label) for label, run in runs.items()])
+    runs = [model.run(scene, times, None if model is AUTOMATON else 400) for model in COMPARED]
+    return pd.concat([profiles(run, figure=name, model=run.model) for run in runs])
 
 
 def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
@@ -218,9 +205,9 @@ def _climb_claim(table: pd.DataFrame, name: str) -> Claim:
         name=f"{name} climb",
         statement=f"The scarp of {name} climbs in the automaton in the time it takes in BCRE.",
         verdict=Verdict(row["verdict"]),
-        evidence=f"from 10 % to 90 % of the climb: {row['automaton']:.4g} in the automaton, "
-        f"{row['pde']:.3g} ± {row['pde_error']:.1g} in BCRE with kappa = 0, "
-        f"{row['pde_effective']:.4g} ± {row['pde_effective_error']:.1g} with D_eff and kappa_eff",
+        evidence=f"from 10 % to 90 % of the climb: {row.automaton:.4g} in the automaton, "
+        f"{row.pde:.3g} ± {row.pde_error:.1g} in BCRE with kappa = 0, "
+        f"{row.pde_effective:.4g} ± {row.pde_effective_error:.1g} with D_eff and kappa_eff",
         tolerance=f"{TOLERANCE:.0%} of the time, as for the profiles",
     )
 
@@ -234,14 +221,14 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
         frames = table[table["figure"] == name]
         for model, lines in frames.groupby("model", sort=False):
             for t, line in lines.groupby("t"):
-                look = style.MODELS[str(model)] if t > 0 else style.START
+                look = MODELS[str(model)].line if t > 0 else style.START
                 axis.plot(line["x"], line[column], **look)
         _mark_unresolved(axis, tables["comparison"], frames, name)
         last = frames["t"].max()
         axis.set_title(f"Figure {name[-1]}: t = 0 to {last:g}", loc="left")
         axis.set_xlabel("x (downhill)")
         axis.set_ylabel("static layer h" if column == "h" else "rolling layer R")
-    style.legend(figure, [*style.MODELS, "start"])
+    style.legend(figure, COMPARED, start=True)
     return figure
 
 
@@ -250,7 +237,7 @@ def _mark_unresolved(axis: Axes, table: pd.DataFrame, frames: pd.DataFrame, name
     row = table[(table["case"] == name) & (table["quantity"] == PROFILE)].iloc[0]
     if row["verdict"] != str(Verdict.UNRESOLVED):
         return
-    line = frames[(frames["model"] == "pde") & (frames["t"] == frames["t"].max())]
+    line = frames[(frames["model"] == BCRE.name) & (frames["t"] == frames["t"].max())]
     steepest = int(np.argmin(np.diff(line["h"])))
     place = (line["x"].iloc[steepest], line["h"].iloc[steepest] / 2)
     text = "BCRE unresolved:\nits place is the grid's"

@@ -31,11 +31,11 @@ from bcre_ca.rule import Order, Sign
 from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict
-from bcre_studies.models.simulate import rule_of
+from bcre_studies.models.automaton import rule_of
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
-from bcre_studies.scenes.scene import Scene, load
-from bcre_studies.sweeps.each import each
+from bcre_studies.scenes.scene import load
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -86,7 +86,7 @@ def read(figure: str, step: str, sign: Sign, order: Order) -> Row:
         "mass_error": round(abs(last.mass(rule.d) + last.outflow - mass) / mass, 12),
         "R_not_negative": bool(min(pile.R.min() for pile in piles) >= 0),
         "ends": bool(last.R.sum() < ENDED * largest),
-        "caption": caption(scene, start, last if figure == "figure1" else shown),
+        "caption": caption(figure, start, last if figure == FIGURES[0] else shown),
     }
 
 
@@ -122,16 +122,17 @@ def shortest_wave(rule: bcre_ca.Rule) -> float:
     return significant(float(abs(after[100] / R[100])), 4)
 
 
-def caption(scene: Scene, start: bcre_ca.Pile, end: bcre_ca.Pile) -> bool:
-    """Whether a figure shows what the paper's caption says of it."""
+def caption(figure: str, start: bcre_ca.Pile, end: bcre_ca.Pile) -> bool:
+    """Whether one of :data:`FIGURES` shows what the paper's caption says of it."""
+    scene = load(figure)
     x, Sc = scene.centres(), scene.material.Sc
     if (end.R < 0).any():
         return False
-    if scene.title.startswith("Figure 1"):
+    if figure == "figure1":
         return bool((end.h >= 0).all() and end.h.sum() <= LEFT_OVER * start.h.sum())
     (centre, width), (later, wider) = (_place(x, pile.R) for pile in (start, end))
     travelled = later > centre and wider > width
-    if scene.title.startswith("Figure 2"):
+    if figure == "figure2":
         fall = float(end.h[0] - end.h[-1]) / float(x[-1] - x[0])
         return bool(travelled and fall < Sc)
     change = np.abs(end.h - start.h)

@@ -25,19 +25,20 @@ import numpy as np
 import pandas as pd
 
 import bcre_ca.theory
-import bcre_pde
 import bcre_pde.theory
 from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.compare import compare_each
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict, worst
-from bcre_studies.models.simulate import Run, as_run, problem_of, rule_of, run_automaton
+from bcre_studies.models.automaton import rule_of
+from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED, EFFECTIVE, MODELS, Model
+from bcre_studies.models.run import Run
 from bcre_studies.observables import fronts as observe
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, load
 from bcre_studies.scenes.terms import NOISE_WAVES
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -84,12 +85,6 @@ def rolling_scene(d: float) -> Scene:
     )
 
 
-def effective(scene: Scene, layer: float) -> bcre_pde.Problem:
-    """BCRE with the automaton's D_eff, and its kappa_eff under a uniform layer."""
-    rule = rule_of(scene)
-    return problem_of(scene, rule.effective_diffusion(), rule.effective_curvature(layer))
-
-
 def wavenumbers(scene: Scene) -> Array:
     """k of the modes that are measured, shape (K,)."""
     return 2 * np.pi * np.array(WAVES) / scene.domain.length
@@ -106,22 +101,23 @@ def run() -> dict[str, pd.DataFrame]:
     }
 
 
-def mode_rates(field: str, d: float, k: float) -> dict[str, complex]:
-    """Closed forms s of one mode: automaton, BCRE with kappa = 0, BCRE with D_eff, kappa_eff."""
+def mode_rates(field: str, d: float, k: float) -> dict[Model, complex]:
+    """Closed forms s of one mode in every model."""
     scene = surface_scene(d) if field == "u" else rolling_scene(d)
     rule = rule_of(scene)
     if field == "u":
-        kappa = rule.effective_curvature(R0)
-        return {
-            "ca": bcre_ca.theory.surface_mode_rate(rule.gamma, R0, d, rule.dt, k),
-            "pde": bcre_pde.theory.surface_mode_rate(rule.gamma, 0.0, R0, k),
-            "pde effective": bcre_pde.theory.surface_mode_rate(rule.gamma, kappa, R0, k),
-        }
-    return {
-        "ca": bcre_ca.theory.rolling_mode_rate(rule.v, rule.D, d, rule.dt, k),
-        "pde": bcre_pde.theory.rolling_mode_rate(rule.v, rule.D, k),
-        "pde effective": bcre_pde.theory.rolling_mode_rate(rule.v, rule.effective_diffusion(), k),
-    }
+        rates = (
+            bcre_ca.theory.surface_mode_rate(rule.gamma, R0, d, rule.dt, k),
+            bcre_pde.theory.surface_mode_rate(rule.gamma, 0.0, R0, k),
+            bcre_pde.theory.surface_mode_rate(rule.gamma, rule.effective_curvature(R0), R0, k),
+        )
+    else:
+        rates = (
+            bcre_ca.theory.rolling_mode_rate(rule.v, rule.D, d, rule.dt, k),
+            bcre_pde.theory.rolling_mode_rate(rule.v, rule.D, k),
+            bcre_pde.theory.rolling_mode_rate(rule.v, rule.effective_diffusion(), k),
+        )
+    return dict(zip(COMPARED, rates, strict=True))
 
 
 def _modes(case: tuple[str, float]) -> list[Row]:
@@ -145,14 +141,11 @@ def _modes(case: tuple[str, float]) -> list[Row]:
     rates = [mode_rates(field, d, k) for k in waves]
     own, nominal = (
         [part for rate, k in zip(rates, waves, strict=True) for part in split(rate[model], k)]
-        for model in ("ca", "pde")
+        for model in (AUTOMATON, BCRE)
     )
     # BCRE's decay rate may be zero, its phase speed may not.
     scales = [value for pair in zip(own[::2], nominal[1::2], strict=True) for value in pair]
-    layer = R0 if field == "u" else 0.0
-    results = compare_each(
-        scene, [0.0, SPAN], measured, scales, TOLERANCE, effective(scene, layer), finest=800
-    )
+    results = compare_each(scene, [0.0, SPAN], measured, scales, TOLERANCE, finest=800)
     rows = [
         {
             "quantity": names[index % 2],
@@ -170,10 +163,9 @@ def _modes(case: tuple[str, float]) -> list[Row]:
 def _rough_slope() -> tuple[list[Row], pd.DataFrame]:
     """RMS of u at some times, compared; and at all times, with the linear closed forms."""
     scene = load("rough_slope").with_changes(step=1.0)
-    own = effective(scene, R0)
     k = 2 * np.pi * np.arange(1, NOISE_WAVES + 1) / scene.domain.length
 
-    def linear(model: str, t: float) -> float:
+    def linear(model: Model, t: float) -> float:
         decays = [mode_rates("u", scene.d, wave)[model].real for wave in k]
         return float(HEIGHT * np.sqrt(np.mean(np.exp(2 * t * np.array(decays)))))
 
@@ -181,7 +173,7 @@ def _rough_slope() -> tuple[list[Row], pd.DataFrame]:
         return [observe.roughness(u) for u in run.u[1:]]
 
     results = compare_each(
-        scene, [0.0, *SHOWN], measured, [HEIGHT] * len(SHOWN), TOLERANCE, own, finest=800
+        scene, [0.0, *SHOWN], measured, [HEIGHT] * len(SHOWN), TOLERANCE, finest=800
     )
     table = [
         {
@@ -190,17 +182,16 @@ def _rough_slope() -> tuple[list[Row], pd.DataFrame]:
             "k": np.nan,
             "k d": np.nan,
             "t": t,
-            **result.row(linear("ca", t), linear("pde", t)),
+            **result.row(linear(AUTOMATON, t), linear(BCRE, t)),
         }
         for t, result in zip(SHOWN, results, strict=True)
     ]
-    runs = {"ca": run_automaton(scene, TIMES)} | {
-        model: as_run(scene, bcre_pde.solve(problem, TIMES, 400))
-        for model, problem in (("pde", problem_of(scene)), ("pde effective", own))
+    runs = {
+        model: model.run(scene, TIMES, None if model is AUTOMATON else 400) for model in COMPARED
     }
     series = pd.DataFrame(
         {
-            "model": model,
+            "model": model.name,
             "t": t,
             "RMS": significant(observe.roughness(u), 4),
             "closed form": significant(linear(model, t), 4),
@@ -239,8 +230,8 @@ def _surface_claim(rows: pd.DataFrame) -> Claim:
         "Roughness of the surface decays in the automaton as it does in BCRE.",
         rows,
         f"BCRE with kappa = 0 only carries it uphill (largest rate found "
-        f"{rows['pde'].abs().max():.0e}), the automaton smooths it: at k = {coarse['k']:.2g} by "
-        f"{coarse['automaton']:.2g} per time at d = 1 and {fine['automaton']:.2g} at "
+        f"{rows.pde.abs().max():.0e}), the automaton smooths it: at k = {coarse['k']:.2g} by "
+        f"{coarse.automaton:.2g} per time at d = 1 and {fine.automaton:.2g} at "
         f"d = {fine['d']:g}. That is its cell size, not a property of sand: BCRE with "
         f"kappa_eff = (gamma d/2)(1 - c) has the same rates within "
         f"{rows['difference_effective'].max():.1g}",
@@ -277,8 +268,8 @@ def _short_claim(rows: pd.DataFrame) -> Claim:
         rows,
         f"at k d = {shortest['k d'].iloc[0]:.2g} kappa_eff overstates the decay of u by "
         f"{shortest.loc[U_DECAY, 'difference_effective']:.2g} of the automaton's rate, which "
-        f"saturates, and u climbs at {shortest.loc[U_SPEED, 'automaton']:.2g} instead of "
-        f"{shortest.loc[U_SPEED, 'pde']:.2g}; for R the decay is off by "
+        f"saturates, and u climbs at {shortest.automaton[U_SPEED]:.2g} instead of "
+        f"{shortest.pde[U_SPEED]:.2g}; for R the decay is off by "
         f"{shortest.loc[R_DECAY, 'difference_effective']:.1g} with D_eff, the speed by "
         f"{shortest.loc[R_SPEED, 'difference']:.2g}. No coefficient of BCRE mends that",
     )
@@ -286,10 +277,10 @@ def _short_claim(rows: pd.DataFrame) -> Claim:
 
 def _theory_claim(rows: pd.DataFrame) -> Claim:
     decays = rows["quantity"].isin([U_DECAY, R_DECAY])
-    scale = rows["automaton_theory"].where(decays, rows["pde_theory"])
+    scale = rows.automaton_theory.where(decays, rows.pde_theory)
     own, pde = (
-        float(((rows[model] - rows[f"{model}_theory"]).abs() / scale).max())
-        for model in ("automaton", "pde")
+        float(((rows[model.column] - rows[f"{model.column}_theory"]).abs() / scale).max())
+        for model in (AUTOMATON, BCRE)
     )
     agrees = own <= THEORY_TOLERANCE and pde <= TOLERANCE
     return Claim(
@@ -310,15 +301,12 @@ def _rough_slope_claim(rows: pd.DataFrame) -> Claim:
         "rough slope under steady flow",
         "A rough slope under a steady rolling layer gets as smooth in the automaton as in BCRE.",
         rows,
-        f"of a root mean square of {HEIGHT:g} at the start {last['automaton']:.2g} is left at "
-        f"t = {last['t']:g} in the automaton, {last['pde']:.3g} in BCRE with kappa = 0 and "
-        f"{last['pde_effective']:.2g} with D_eff and kappa_eff, which are never off by more than "
+        f"of a root mean square of {HEIGHT:g} at the start {last.automaton:.2g} is left at "
+        f"t = {last['t']:g} in the automaton, {last.pde:.3g} in BCRE with kappa = 0 and "
+        f"{last.pde_effective:.2g} with D_eff and kappa_eff, which are never off by more than "
         f"{rows['difference_effective'].max():.1g} of the start. The linear modes of the automaton "
-        f"add up to {last['automaton_theory']:.2g}",
+        f"add up to {last.automaton_theory:.2g}",
     )
-
-
-COLUMNS = {"pde": "pde", "pde effective": "pde_effective", "ca": "automaton"}
 
 
 def draw(tables: dict[str, pd.DataFrame]) -> Figure:
@@ -330,15 +318,16 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
         for d in CELLS:
             _draw_modes(axis, table[(table["quantity"] == quantity) & (table["d"] == d)], quantity)
         axis.set(xlabel="wavenumber k (1/length)", ylabel=f"{quantity} ({unit})")
-    for model, line in tables["rough_slope"].groupby("model", sort=False):
-        axes[3].plot(line["t"], line["closed form"], **style.MODELS[str(model)])
-        axes[3].plot(line["t"], line["RMS"], **style.marker(str(model)))
+    for name, line in tables["rough_slope"].groupby("model", sort=False):
+        model = MODELS[str(name)]
+        axes[3].plot(line["t"], line["closed form"], **model.line)
+        axes[3].plot(line["t"], line["RMS"], **model.markers())
     axes[3].set(xlabel="t", ylabel="root mean square of u (length)")
     axes[3].set_ylim(bottom=0)
     titles = ("(a) surface", "(b) surface", "(c) rolling layer", "(d) rough_slope, d = 1")
     for axis, title in zip(axes, titles, strict=True):
         axis.set_title(title, loc="left")
-    style.legend(figure, style.MODELS, markers=True)
+    style.legend(figure, COMPARED, markers=True)
     return figure
 
 
@@ -348,11 +337,11 @@ def _draw_modes(axis: Axes, rows: pd.DataFrame, quantity: str) -> None:
     rates = [
         mode_rates("u" if quantity in (U_DECAY, U_SPEED) else "R", d, float(each)) for each in k
     ]
-    for model, column in COLUMNS.items():
+    for model in (BCRE, EFFECTIVE, AUTOMATON):
         values = np.array([rate[model] for rate in rates])
         line = values.imag / k if quantity == U_SPEED else -values.real
-        axis.plot(k, line, **style.MODELS[model])
-        axis.plot(rows["k"], rows[column], **style.marker(model, hollow=d < 1))
+        axis.plot(k, line, **model.line)
+        axis.plot(rows["k"], rows[model.column], **model.markers(hollow=d < 1))
     axis.annotate(
         f"d = {d:g}", (k[-1], line[-1]), (3, 2 if d == 1 else -9), textcoords="offset points"
     )

@@ -35,13 +35,15 @@ from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.compare import compare_each
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict, worst
-from bcre_studies.models.simulate import Run, problem_of, rule_of
+from bcre_studies.models.automaton import rule_of
+from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED
+from bcre_studies.models.run import Run
 from bcre_studies.observables import fronts as observe
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Domain
 from bcre_studies.scenes.scene import Scene, Time, load
 from bcre_studies.scenes.terms import Incline, Sine, Uniform
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -72,12 +74,12 @@ HALF_WIDTH = PULSE_WIDTH * math.sqrt(-math.log(EDGE))
 """From the centre of figure 3's pulse to its edge at the start."""
 
 Row = dict[str, Any]
-Case = tuple[Callable[..., list[Row]], tuple[float, ...]]
+Mechanism = tuple[Callable[..., list[Row]], tuple[float, ...]]
 
 
 def run() -> dict[str, pd.DataFrame]:
     """All mechanisms at the paper's cells, d = 1, and at d = 1/4."""
-    cases: list[Case] = [(scarp, (d,)) for d in CELLS]
+    cases: list[Mechanism] = [(scarp, (d,)) for d in CELLS]
     cases += [(reach, (d,)) for d in CELLS]
     cases += [(front, (d, excess)) for d in CELLS for excess in EXCESSES]
     cases += [(wave, (d, R0)) for d in CELLS for R0 in LAYERS]
@@ -86,7 +88,7 @@ def run() -> dict[str, pd.DataFrame]:
     return {"comparison": pd.DataFrame(rows)}
 
 
-def _case(case: Case) -> list[Row]:
+def _case(case: Mechanism) -> list[Row]:
     function, arguments = case
     return function(*arguments)
 
@@ -147,7 +149,6 @@ def wave(d: float, R0: float) -> list[Row]:
         speed,
         [theory],
         TOLERANCE,
-        problem_of(scene, rule.effective_diffusion(), rule.effective_curvature(R0)),
         coarsest=20,
         finest=160,
     )
@@ -252,10 +253,10 @@ def _front_claim(table: pd.DataFrame) -> Claim:
         f"once D_eff is counted {coarse['difference_effective'].max():.1g} and "
         f"{fine['difference_effective'].max():.1g} are left"
     )
-    for _, row in coarse[coarse["automaton"] * coarse["pde"] < 0].iterrows():
+    for _, row in coarse[coarse.automaton * coarse.pde < 0].iterrows():
         evidence += (
             f". At S - Sc = {row['value']:g}, between the two Sd, the automaton's front climbs "
-            f"(V = {row['automaton']:.4f}) where that of BCRE is swept down ({row['pde']:.4f})"
+            f"(V = {row.automaton:.4f}) where that of BCRE is swept down ({row.pde:.4f})"
         )
     statement = "The automaton's rolling layer climbs a steep slope at the speed of BCRE's."
     return _claim("rolling front", statement, coarse, evidence)
@@ -265,8 +266,8 @@ def _front_theory_claim(table: pd.DataFrame) -> Claim:
     rows = table[table["quantity"] == FRONT]
     scale = rows["pde_theory"] + load("figure1").material.v
     own, pde = (
-        float(((rows[model] - rows[f"{model}_theory"]).abs() / scale).max())
-        for model in ("automaton", "pde")
+        float(((rows[model.column] - rows[f"{model.column}_theory"]).abs() / scale).max())
+        for model in (AUTOMATON, BCRE)
     )
     return Claim(
         name="rolling front closed forms",
@@ -295,34 +296,31 @@ def _scarp_claim(table: pd.DataFrame) -> Claim:
         "scarp",
         "A scarp climbs in the automaton as fast as one of equal height does in BCRE.",
         _of(table, SCARP),
-        f"at H = {coarse['value']:g} c is {coarse['automaton']:.3f} at d = 1 and "
-        f"{fine['automaton']:.3f} at d = 1/4, but {coarse['pde']:.3g} ± {coarse['pde_error']:g} in "
+        f"at H = {coarse['value']:g} c is {coarse.automaton:.3f} at d = 1 and "
+        f"{fine.automaton:.3f} at d = 1/4, but {coarse.pde:.3g} ± {coarse.pde_error:g} in "
         f"BCRE: the automaton's scarp is some cells wide, so that less R stands where it climbs. "
-        f"kappa_eff makes BCRE's as wide: {coarse['pde_effective']:.3f} and "
-        f"{fine['pde_effective']:.3f}. A sharp scarp would climb at {coarse['pde_theory']:.3g}; "
-        f"BCRE's own is {1 - coarse['pde'] / coarse['pde_theory']:.0%} slower, as R runs ahead by "
+        f"kappa_eff makes BCRE's as wide: {coarse.pde_effective:.3f} and "
+        f"{fine.pde_effective:.3f}. A sharp scarp would climb at {coarse.pde_theory:.3g}; "
+        f"BCRE's own is {1 - coarse.pde / coarse.pde_theory:.0%} slower, as R runs ahead by "
         f"D/(v + c) and erodes the slope above it",
     )
 
 
 def _reach_claim(table: pd.DataFrame) -> Claim:
     rolling, surface = (_of(table, quantity).iloc[0] for quantity in (REACH_R, REACH_H))
-    centre = {name: HALF_WIDTH + surface[name] for name in COLUMNS.values()}
+    centre = HALF_WIDTH + surface[[model.column for model in COMPARED]]
     return _claim(
         "reach in figure 3",
         "Figure 3's avalanche affects as much of the slope above its start in both models.",
         pd.DataFrame([rolling, surface]),
-        f"the edge of R ends {-rolling['automaton']:.1f} downhill of its start in the automaton, "
-        f"{-rolling['pde']:.1f} in BCRE, {-rolling['pde_effective']:.1f} with D_eff: S is below Sd "
-        f"and all is swept down. h changes from {centre['automaton']:.1f} above the pulse's centre "
-        f"in the automaton, {centre['pde']:.1f} in BCRE, {centre['pde_effective']:.1f} with D_eff; "
+        f"the edge of R ends {-rolling.automaton:.1f} downhill of its start in the automaton, "
+        f"{-rolling.pde:.1f} in BCRE, {-rolling.pde_effective:.1f} with D_eff: S is below Sd "
+        f"and all is swept down. h changes from {centre.automaton:.1f} above the pulse's centre "
+        f"in the automaton, {centre.pde:.1f} in BCRE, {centre.pde_effective:.1f} with D_eff; "
         f"the automaton besides takes R at the beginning of each step, v dt/2 uphill. "
         f"These are cells on which the pulse itself lay (its edge was {HALF_WIDTH:.1f} above its "
         f"centre), and in this sense alone the region affected includes cells above the start",
     )
-
-
-COLUMNS = {"pde": "pde", "pde effective": "pde_effective", "ca": "automaton"}
 
 
 def draw(tables: dict[str, pd.DataFrame]) -> Figure:
@@ -339,12 +337,12 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
         _closed_forms(axis, quantity)
         for d in CELLS:
             rows = _of(table, quantity, d)
-            for model, column in COLUMNS.items():
-                axis.plot(rows["value"], rows[column], **style.marker(model, hollow=d < 1))
+            for model in COMPARED:
+                axis.plot(rows["value"], rows[model.column], **model.markers(hollow=d < 1))
         axis.set(xlabel=label, ylabel=f"{quantity} (length/time)")
         axis.set_title(title, loc="left")
     _draw_reach(axes[3], table)
-    style.legend(figure, style.MODELS, markers=True)
+    style.legend(figure, COMPARED, markers=True)
     return figure
 
 
@@ -356,7 +354,7 @@ def _closed_forms(axis: Axes, quantity: str) -> None:
         axis.axhline(0, color="0.3", linewidth=0.8)
         for d in CELLS:
             speeds = [bcre_ca.theory.uphill_front_speed(v, D, gamma * S, d, 0.4 * d) for S in x]
-            axis.plot(x, speeds, **style.MODELS["ca"])
+            axis.plot(x, speeds, **AUTOMATON.line)
             axis.annotate(f"d = {d:g}", (x[-1], speeds[-1]), (3, 0), textcoords="offset points")
         lines = [bcre_pde.theory.uphill_front_speed(v, D, gamma * S) for S in x]
     elif quantity == WAVE:
@@ -365,15 +363,15 @@ def _closed_forms(axis: Axes, quantity: str) -> None:
     else:
         x = np.array([0.9 * HEIGHTS[0], 1.03 * HEIGHTS[-1]])
         lines = [bcre_pde.theory.scarp_speed(v, gamma, H) for H in x]
-    axis.plot(x, lines, **style.MODELS["pde"])
+    axis.plot(x, lines, **BCRE.line)
 
 
 def _draw_reach(axis: Axes, table: pd.DataFrame) -> None:
     places = [(quantity, d) for quantity in (REACH_R, REACH_H) for d in CELLS]
     for place, (quantity, d) in enumerate(places):
         row = _of(table, quantity, d).iloc[0]
-        for model, column in COLUMNS.items():
-            axis.plot(row[column], place, **style.marker(model, hollow=d < 1))
+        for model in COMPARED:
+            axis.plot(row[model.column], place, **model.markers(hollow=d < 1))
     axis.axvline(0, **style.START)
     names = {REACH_R: "R", REACH_H: "change of h"}
     axis.set_yticks(range(len(places)), [f"{names[quantity]}\nd = {d:g}" for quantity, d in places])

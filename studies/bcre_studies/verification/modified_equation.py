@@ -24,19 +24,20 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-import bcre_pde
 from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.compare import refine
-from bcre_studies.comparison.difference import relative_difference, sample
+from bcre_studies.comparison.difference import relative_difference
 from bcre_studies.comparison.error import relative_error
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict, verdict_of
-from bcre_studies.models.simulate import Run, effective_problem_of, problem_of, run_automaton
+from bcre_studies.models.effective import effective
+from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE, Look
+from bcre_studies.models.run import Run
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.listing import built_in_names
 from bcre_studies.scenes.scene import Scene, load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -68,14 +69,10 @@ def run() -> dict[str, pd.DataFrame]:
     return {"comparison": pd.DataFrame(each(_compare, cases, "modified_equation"))}
 
 
-def _problems(scene: Scene) -> dict[str, bcre_pde.Problem]:
-    both = effective_problem_of(scene).material
-    return {
-        "nominal": problem_of(scene),
-        "D_eff": problem_of(scene, D=both.D),
-        "kappa_eff": problem_of(scene, kappa=both.kappa),
-        "both": problem_of(scene, D=both.D, kappa=both.kappa),
-    }
+def _variants(scene: Scene) -> dict[str, Scene]:
+    both = effective(scene)
+    alone = scene.with_changes(D=both.material.D), scene.with_changes(kappa=both.material.kappa)
+    return dict(zip(VARIANTS, (scene, *alone, both), strict=True))
 
 
 def _compare(case: tuple[str, str, int, int]) -> dict[str, Any]:
@@ -84,15 +81,13 @@ def _compare(case: tuple[str, str, int, int]) -> dict[str, Any]:
     x, times = scene.centres(), [scene.time.until]
 
     def measure(run: Run) -> Array:
-        return sample(run, x)
+        return run.sample(x)
 
-    automaton = measure(run_automaton(scene, times))
+    automaton = measure(AUTOMATON.run(scene, times))
     row = {"scene": name, "split": split, "d": scene.d, "dt": scene.time.step}
     found = {
-        variant: refine(
-            scene, problem, times, measure, automaton, TOLERANCE, coarsest=100, finest=400
-        )
-        for variant, problem in _problems(scene).items()
+        variant: refine(changed, times, measure, automaton, TOLERANCE, coarsest=100, finest=400)
+        for variant, changed in _variants(scene).items()
     }
     differences = {
         variant: relative_difference(automaton, refined.value) for variant, refined in found.items()
@@ -179,8 +174,8 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
     table = tables["comparison"]
     names = list(dict.fromkeys(table["scene"]))
     figure, axes = style.panels(2, (len(names) + 1) // 2)
-    looks = {
-        "nominal": {**style.MODELS["pde"], "marker": "s", "label": "BCRE"},
+    looks: dict[str, Look] = {
+        "nominal": BCRE.marked_line,
         "D_eff": {
             "color": "#7a5ea8",
             "linestyle": "-.",
@@ -193,10 +188,8 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
             "marker": "D",
             "label": r"with $\kappa_\mathrm{eff}$",
         },
-        "both": {**style.MODELS["pde effective"], "marker": "^", "label": "with both"},
+        "both": EFFECTIVE.marked_line,
     }
-    looks["D_eff"]["label"] = r"with $D_\mathrm{eff}$"
-    looks["kappa_eff"]["label"] = r"with $\kappa_\mathrm{eff}$"
     for axis, name in zip(axes, names, strict=False):
         rows = table[(table["scene"] == name) & (table["split"] == "space")]
         for variant, look in looks.items():

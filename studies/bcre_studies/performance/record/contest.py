@@ -18,8 +18,9 @@ import numpy as np
 import bcre_ca
 import bcre_pde
 from bcre_pde import Method, exact
-from bcre_studies.comparison.difference import sample
-from bcre_studies.models.simulate import as_run, problem_of, rule_of
+from bcre_studies.models.automaton import rule_of
+from bcre_studies.models.bcre import problem_of, run_of
+from bcre_studies.models.registry import SCHEMES
 from bcre_studies.observables.fronts import edge
 from bcre_studies.performance.rivals import (
     fipy_solver,
@@ -87,11 +88,11 @@ METHODS: tuple[Method, ...] = ("runge-kutta", "RK45", "DOP853", "LSODA", "BDF")
 
 def own() -> tuple[Contender, ...]:
     """The automaton's schemes and the PDE's methods."""
-    automata = (("upwind", 50, 4e8), ("calibrated", 50, 4e8), ("limited", 25, 1e8))
+    limits = ((50, 4e8), (50, 4e8), (25, 1e8))
     pdes: dict[Method, float] = {"LSODA": 4e5, "BDF": 4e5}
     return tuple(
-        Contender(f"automaton, {scheme}", partial(_automaton, scheme), coarsest, most)
-        for scheme, coarsest, most in automata
+        Contender(model.label, partial(_automaton, model.name), coarsest, most)
+        for model, (coarsest, most) in zip(SCHEMES.values(), limits, strict=True)
     ) + tuple(
         Contender(f"PDE, {method}", partial(_pde, method), 25, pdes.get(method, 1.5e7))
         for method in METHODS
@@ -157,7 +158,7 @@ def _fipy(scene: Scene, cells: int) -> Solve:
 
 def _printed(scene: Scene) -> bcre_pde.Problem:
     """The scene as the paper's rule sees it, without curvature."""
-    return problem_of(scene, kappa=0.0)
+    return problem_of(scene.with_changes(kappa=0.0))
 
 
 def _step(scene: Scene, cells: int) -> float:
@@ -195,9 +196,9 @@ _known: dict[str, Truth] = {}
 
 def _truth(key: str, scene: Scene) -> Truth:
     if key not in _known:
-        _known[key] = (
-            _exact(scene) if scene.title == load("climbing_wave").title else _solved(scene)
-        )
+        # Without diffusion and curvature the only scene is that of the nonlinear wave.
+        exactly = scene.material.D == scene.material.kappa == 0
+        _known[key] = _exact(scene) if exactly else _solved(scene)
     return _known[key]
 
 
@@ -219,16 +220,16 @@ def _exact(scene: Scene) -> Truth:
 def _solved(scene: Scene) -> Truth:
     problem, until = problem_of(scene), [scene.time.until]
     runs = [
-        as_run(scene, bcre_pde.solve(problem, until, cells, tolerance=1e-8))
+        run_of(scene, bcre_pde.solve(problem, until, cells, tolerance=1e-8))
         for cells in TRUTH_CELLS
     ]
     x = runs[0].x
-    coarse, medium, fine = (sample(run, x) for run in runs)
+    coarse, medium, fine = (run.sample(x) for run in runs)
     index = bcre_pde.grid_convergence_index(fine, medium, coarse)
     finest, Sc = runs[-1], scene.material.Sc
 
     def layers(at: Array) -> tuple[Array, Array]:
-        return sample(finest, at, "u") - Sc * at, sample(finest, at)
+        return finest.sample(at, "u") - Sc * at, finest.sample(at)
 
     return Truth(layers, finest.R[-1], index.error / float(np.mean(np.abs(fine))))
 

@@ -19,6 +19,7 @@ from bcre_studies.timing.clock import take_turns
 
 Tables = dict[str, pd.DataFrame]
 
+READS = "speed/*.csv"
 RECORD = REPORTS / "speed"
 LOCAL = REPORTS / "local"
 

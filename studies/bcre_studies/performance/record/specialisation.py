@@ -24,7 +24,8 @@ from bcre_studies.timing.clock import Call, interleaved
 CELLS = (1000, 100_000)
 CELL_STEPS = 20_000_000
 ROUNDS = 7
-RECORD = REPORTS / "speed" / "specialisation.csv"
+READS = "speed/specialisation.csv"
+RECORD = REPORTS / READS
 
 SINGLE = "double precision"
 TERMS: dict[str, float] = {"D": 1e-300, "kappa": 1e-300, "v_up": 1e300, "dry": 1e-300}

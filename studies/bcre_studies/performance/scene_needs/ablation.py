@@ -35,9 +35,9 @@ import numpy as np
 
 import bcre_ca
 from bcre_ca.rule import Ends, Scheme
-from bcre_studies.models.height_only import settled
-from bcre_studies.models.simulate import frame_times, rule_of
-from bcre_studies.observables.named import Record
+from bcre_studies.models.automaton import rule_of, run_of
+from bcre_studies.models.registry import HEIGHT_ONLY
+from bcre_studies.models.run import Run, frame_times
 from bcre_studies.performance.record import specialisation
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene
@@ -85,7 +85,7 @@ class Model:
 class Trial:
     """A run of a model, with the number of cells stepped and its cost in those of the full one."""
 
-    record: Record
+    record: Run
     cell_steps: float
     cost: float
 
@@ -150,7 +150,7 @@ def _stepped(scene: Scene, model: Model) -> Trial:
         (after.steps - before.steps) * bcre_ca.stepped_cells(before.R)
         for before, after in pairwise(piles)
     )
-    return Trial(_record(scene, changed, piles), steps, steps * _cost(changed, rule, single))
+    return Trial(run_of(changed, piles), steps, steps * _cost(changed, rule, single))
 
 
 def recorded_times(scene: Scene) -> list[float]:
@@ -227,23 +227,15 @@ def _on_frozen_slope(scene: Scene, model: Model) -> Trial:
         layers = bcre_ca.evolve(before.h, before.R, exact, steps, ends, frozen=h)
         cell_steps += steps * before.R.size
         piles.append(bcre_ca.Pile(*layers, time, 0.0, before.steps + steps))
-    record = _record(scene, changed, piles)
-    return Trial(record, cell_steps, cell_steps * _cost(changed, rule, single=False))
+    cost = cell_steps * _cost(changed, rule, single=False)
+    return Trial(run_of(changed, piles), cell_steps, cost)
 
 
 def _of_height_alone(scene: Scene) -> Trial:
     """R on h, settled; what a step of its cells takes counts as in the full model."""
-    x = scene.centres()
-    h, R = scene.initial(x)
-    end, steps = settled(h + R, scene.material.Sc * scene.d, scene.domain.ends == "periodic")
-    t = np.array([0.0, scene.time.until])
-    cell_steps = float(steps * x.size)
-    return Trial(Record(scene, x, t, np.array([h + R, end]), None), cell_steps, cell_steps)
-
-
-def _record(scene: Scene, changed: Scene, piles: list[bcre_ca.Pile]) -> Record:
-    h, R = (np.array([getattr(pile, name) for pile in piles]) for name in ("h", "R"))
-    return Record(scene, changed.centres(), np.array([pile.t for pile in piles]), h, R)
+    run = HEIGHT_ONLY.run(scene, [0.0, scene.time.until])
+    cell_steps = float(run.steps * run.x.size)
+    return Trial(run, cell_steps, cell_steps)
 
 
 def _cost(scene: Scene, rule: bcre_ca.Rule, single: bool) -> float:

@@ -59,13 +59,12 @@ from bcre_studies.performance.scene_needs.smallest import (
 from bcre_studies.reporting import style
 from bcre_studies.scenes.listing import built_in_names
 from bcre_studies.scenes.scene import load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-READS_RECORD = True
 TOLERANCES = {"1": 0.01, "5": 0.05}
 WHY = (
     "1 % is about what a measurement of a pile can tell, 5 % the width of a line in the paper's "

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import bcre_ca
 import bcre_pde
-from bcre_studies.models.simulate import rule_of
+from bcre_studies.models.automaton import rule_of
+from bcre_studies.models.bcre import problem_of
 from bcre_studies.observables.outcome import slope
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene
@@ -29,9 +30,9 @@ def slopes_of_automaton(scene: Scene, pulses: int) -> list[float]:
     return slopes
 
 
-def slopes_of_pde(scene: Scene, problem: bcre_pde.Problem, cells: int, pulses: int) -> list[float]:
+def slopes_of_pde(scene: Scene, cells: int, pulses: int) -> list[float]:
     """Slope S after each pulse in BCRE on a grid of so many cells."""
-    x = scene.centres(cells)
+    x, problem = scene.centres(cells), problem_of(scene)
     _, pulse = problem.initial(x)
     slopes = []
     for _ in range(pulses):

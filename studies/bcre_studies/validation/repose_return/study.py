@@ -34,11 +34,13 @@ from bcre_studies.comparison.compare import Comparison
 from bcre_studies.comparison.error import allowed_error
 from bcre_studies.comparison.rounding import shown
 from bcre_studies.comparison.verdict import Verdict, worst
-from bcre_studies.models.simulate import effective_problem_of, problem_of, run_automaton
+from bcre_studies.models.bcre import problem_of
+from bcre_studies.models.effective import effective
+from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED, EFFECTIVE, MODELS, Model
 from bcre_studies.observables.outcome import slope, spent
 from bcre_studies.reporting import style
 from bcre_studies.scenes.scene import Scene, load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 from bcre_studies.validation.repose_return.repeated_pulses import (
     SOLVER_TOLERANCE,
     slopes_of_automaton,
@@ -60,6 +62,7 @@ surface wave is slower than this part of v."""
 CLOSE = 0.3
 """|S0 - Sc| up to which a slope counts as close to repose: about 12 degrees above Sc = 0.5."""
 
+COLUMNS = [AUTOMATON.column, BCRE.column]
 SLOW, FAST, REPEATED = "slow", "fast", "repeated"
 SETTINGS = {SLOW: ("figure1", 3000.0, 15.0), FAST: ("pulse_at_repose", 60.0, 20.0)}
 """Scene, time to leave, and place of the pulse, near the top."""
@@ -84,10 +87,10 @@ def scene_of(kind: str, excess: float, pulse: float) -> Scene:
     )
 
 
-def effective_of(scene: Scene) -> bcre_pde.Problem:
+def effective_of(scene: Scene) -> Scene:
     """BCRE with what the automaton has at the paper's d = 1; dt = 1, or 0.2 where v is 2.5."""
     step = 1.0 if scene.time.step == "auto" else scene.time.step
-    return effective_problem_of(scene.with_changes(step=step))
+    return effective(scene.with_changes(step=step))
 
 
 def run() -> dict[str, pd.DataFrame]:
@@ -119,12 +122,12 @@ def single(kind: str, excess: float, pulse: float) -> dict[str, Any]:
     scene = scene_of(kind, excess, pulse)
     Sc = scene.material.Sc
     times = [float(t) for t in np.linspace(0.0, scene.time.until, 31)]
-    end = run_automaton(scene, times, spent)
+    end = AUTOMATON.run(scene, times, stop=spent)
     automaton = slope(end.x, end.h[-1]) - Sc
 
-    def refined(problem: bcre_pde.Problem) -> bcre_pde.Measured:
+    def refined(scene: Scene) -> bcre_pde.Measured:
         found = bcre_pde.solve_refined(
-            problem,
+            problem_of(scene),
             times,
             lambda solution: slope(solution.x, solution.h[-1]) - Sc,
             lambda value: allowed_error(automaton, value, TOLERANCE, Sc),
@@ -135,7 +138,7 @@ def single(kind: str, excess: float, pulse: float) -> dict[str, Any]:
         )
         return bcre_pde.Measured(found.value, found.error)
 
-    pde, effective = refined(problem_of(scene)), refined(effective_of(scene))
+    pde, effective = refined(scene), refined(effective_of(scene))
     return {
         **_head(kind, excess, pulse, 1),
         **Comparison(automaton, pde, effective, TOLERANCE, Sc).row(),
@@ -150,22 +153,23 @@ def repeated(excess: float, pulse: float) -> tuple[Rows, Rows]:
     Sc = scene.material.Sc
     automaton = np.array(slopes_of_automaton(scene, RELEASES)) - Sc
 
-    def refined(problem: bcre_pde.Problem) -> list[bcre_pde.Measured]:
+    def refined(changed: Scene) -> list[bcre_pde.Measured]:
         def measure_on(cells: int) -> tuple[None, list[float]]:
-            slopes = slopes_of_pde(scene, problem, cells, RELEASES)
+            slopes = slopes_of_pde(changed, cells, RELEASES)
             return None, [float(after) for after in np.array(slopes) - Sc]
 
         found = bcre_pde.measure_refined(measure_on, GRIDS)
         return [bcre_pde.Measured(after.value, after.error) for after in found]
 
-    pde, effective = refined(problem_of(scene)), refined(effective_of(scene))
-    values: dict[str, Sequence[float]] = {
-        "ca": automaton.tolist(),
-        "pde": [after.value for after in pde],
-        "pde effective": [after.value for after in effective],
+    pde, effective = refined(scene), refined(effective_of(scene))
+    values: dict[Model, Sequence[float]] = {
+        AUTOMATON: automaton.tolist(),
+        BCRE: [after.value for after in pde],
+        EFFECTIVE: [after.value for after in effective],
     }
+    head = {"S0 - Sc": excess, "pulse": pulse}
     points = [
-        {"S0 - Sc": excess, "pulse": pulse, "pulses": n + 1, "model": model, "S - Sc": slopes[n]}
+        {**head, "pulses": n + 1, "model": model.name, "S - Sc": slopes[n]}
         for model, slopes in values.items()
         for n in range(RELEASES)
     ]
@@ -209,9 +213,6 @@ def _head(kind: str, excess: float, pulse: float, pulses: int) -> dict[str, Any]
     }
 
 
-MODELS = {"ca": "automaton", "pde": "pde", "pde effective": "pde_effective"}
-
-
 def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     """The property as printed, what happens instead, and both models compared."""
     table = tables["comparison"]
@@ -228,19 +229,19 @@ def _printed_claim(rows: pd.DataFrame) -> Claim:
     close = rows[rows["S0 - Sc"].abs() <= CLOSE]
     below, above = close[close["S0 - Sc"] <= 0], close[close["S0 - Sc"] > 0]
     figure2 = _row(rows, FAST, -0.02, 1.0)
-    steepest = above.loc[(above["automaton"] - above["S0 - Sc"]).idxmax()]
-    holds = (above[["automaton", "pde"]] <= AT_REPOSE).to_numpy().all()
+    steepest = above.loc[(above.automaton - above["S0 - Sc"]).idxmax()]
+    holds = (above[COLUMNS] <= AT_REPOSE).to_numpy().all()
     return Claim(
         "first property as printed",
         "A slope close to repose, perturbed locally, returns to an angle below the critical one.",
         Verdict.AGREE if holds else Verdict.DISAGREE,
         f"in neither model: of {len(above)} pulses on slopes up to {CLOSE:g} above Sc "
-        f"{_count(above['automaton'] <= AT_REPOSE)} returned in the automaton and "
-        f"{_count(above['pde'] <= AT_REPOSE)} in BCRE; the slope stays or steepens (S0 - Sc = "
-        f"{steepest['S0 - Sc']:g}, pulse {steepest['pulse']:g}: {steepest['automaton']:.3g} and "
-        f"{steepest['pde']:.3g}). On the {len(below)} at or below Sc the pulse is laid down and S "
-        f"stays there, S - Sc at most {below[['automaton', 'pde']].to_numpy().max():g}, as in "
-        f"figure 2 ({figure2['automaton']:g} and {figure2['pde']:g} from {figure2['S0 - Sc']:g}), "
+        f"{_count(above.automaton <= AT_REPOSE)} returned in the automaton and "
+        f"{_count(above.pde <= AT_REPOSE)} in BCRE; the slope stays or steepens (S0 - Sc = "
+        f"{steepest['S0 - Sc']:g}, pulse {steepest['pulse']:g}: {steepest.automaton:.3g} and "
+        f"{steepest.pde:.3g}). On the {len(below)} at or below Sc the pulse is laid down and S "
+        f"stays there, S - Sc at most {below[COLUMNS].to_numpy().max():g}, as in "
+        f"figure 2 ({figure2.automaton:g} and {figure2.pde:g} from {figure2['S0 - Sc']:g}), "
         "where there is nothing to return from. It is true where the avalanche runs to the top: "
         "above Sd, for a thick enough pulse, or after enough pulses; and then S = Sc, not less",
         f"{AT_REPOSE:g} above Sc: {AT_REPOSE_WHY}",
@@ -250,18 +251,20 @@ def _printed_claim(rows: pd.DataFrame) -> Claim:
 def _all_or_nothing_claim(rows: pd.DataFrame) -> Claim:
     above = rows[rows["S0 - Sc"] > 0]
     start = above["S0 - Sc"]
-    returned = {model: above[model].abs() <= AT_REPOSE for model in ("automaton", "pde")}
+    returned = {column: above[column].abs() <= AT_REPOSE for column in COLUMNS}
     # The slope may be this little short of S0: nothing that a returning slope could be taken for.
-    kept = {model: above[model] >= start - AT_REPOSE for model in returned}
-    holds = all((returned[model] | kept[model]).all() for model in returned)
-    surely = start[returned["automaton"] & returned["pde"]]
+    holds = all(
+        (back | (above[column] >= start - AT_REPOSE)).all() for column, back in returned.items()
+    )
+    automaton, pde = map(_count, returned.values())
+    in_both = start[pd.DataFrame(returned).all(axis=1)]
     return Claim(
         "all or nothing",
         "One pulse above repose leaves the slope as steep as it was, or brings it to S = Sc.",
         Verdict.AGREE if holds else Verdict.DISAGREE,
-        f"of {len(above)} cases the slope came to Sc in {_count(returned['automaton'])} in the "
-        f"automaton and {_count(returned['pde'])} in BCRE, and was kept or steepened in all "
-        f"others; in both models it came down from S0 - Sc = {surely.min():g} on, below either "
+        f"of {len(above)} cases the slope came to Sc in {automaton} in the "
+        f"automaton and {pde} in BCRE, and was kept or steepened in all "
+        f"others; in both models it came down from S0 - Sc = {in_both.min():g} on, below either "
         "Sd, since a pulse that starts at the top has grown thick enough at the foot for its "
         "scarp to climb back",
         f"{AT_REPOSE:g}: {AT_REPOSE_WHY}",
@@ -271,11 +274,11 @@ def _all_or_nothing_claim(rows: pd.DataFrame) -> Claim:
 def _one_pulse_claim(rows: pd.DataFrame) -> Claim:
     differing = rows[rows["verdict"] != Verdict.AGREE]
     cases = ", ".join(
-        f"{row['S0 - Sc']:g} and pulse {row['pulse']:g} ({row['automaton']:.3g} against "
-        f"{row['pde']:.3g}, effective {row['pde_effective']:.3g})"
+        f"{row['S0 - Sc']:g} and pulse {row['pulse']:g} ({row.automaton:.3g} against "
+        f"{row.pde:.3g}, effective {row.pde_effective:.3g})"
         for _, row in differing.iterrows()
     )
-    gaps = [(rows[model] - rows[f"{model}_theory"]).abs() for model in ("automaton", "pde")]
+    gaps = [(rows[column] - rows[f"{column}_theory"]).abs() for column in COLUMNS]
     return Claim(
         "final slope",
         "After one pulse the automaton's slope is that of BCRE.",
@@ -294,13 +297,12 @@ def _repeated_claim(rows: pd.DataFrame, points: pd.DataFrame) -> Claim:
         chosen = points[(points["S0 - Sc"] == excess) & (points["pulse"] == pulse)]
         if excess < 0:
             last = chosen[chosen["pulses"] == RELEASES].set_index("model")["S - Sc"]
-            ends.append(
-                f"{excess:g} rises to {last['ca']:.3g} and {last['pde']:.3g} (pulse {pulse:g})"
-            )
+            automaton, pde = last[AUTOMATON.name], last[BCRE.name]
+            ends.append(f"{excess:g} rises to {automaton:.3g} and {pde:.3g} (pulse {pulse:g})")
         else:
             come = chosen[chosen["S - Sc"].abs() <= AT_REPOSE].groupby("model")["pulses"].min()
-            counts = " and ".join(str(come.get(model, "none")) for model in ("ca", "pde"))
-            peak = chosen[chosen["model"] == "ca"]["S - Sc"].max()
+            counts = " and ".join(str(come.get(model.name, "none")) for model in (AUTOMATON, BCRE))
+            peak = chosen[chosen["model"] == AUTOMATON.name]["S - Sc"].max()
             ends.append(
                 f"{excess:g} steepens up to {peak:.3g} and is at Sc after {counts} pulses (pulse "
                 f"{pulse:g})"
@@ -341,18 +343,18 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
     _draw_final(axes[0], table[table["case"] == SLOW])
     _draw_change(axes[1], table)
     _draw_repeated(axes[2], tables["repeated"])
-    style.legend(figure, style.MODELS, markers=True)
+    style.legend(figure, COMPARED, markers=True)
     return figure
 
 
 def _draw_final(axis: Axes, rows: pd.DataFrame) -> None:
     """Pulse 0.1 hollow, 1 half filled, 10 full; the dash-dotted line is S = S0."""
     fills = dict(zip(SLOW_PULSES, ("none", "left", "full"), strict=True))
-    for (model, column), shift in zip(MODELS.items(), (-0.04, 0.0, 0.04), strict=True):
+    for model, shift in zip(COMPARED, (-0.04, 0.0, 0.04), strict=True):
         for pulse, fill in fills.items():
             chosen = rows[rows["pulse"] == pulse]
-            look = style.marker(model, fillstyle=fill, markerfacecoloralt="white", markersize=6)
-            axis.plot(chosen["S0 - Sc"] + shift, chosen[column], **look)
+            look = model.markers(fillstyle=fill, markerfacecoloralt="white", markersize=6)
+            axis.plot(chosen["S0 - Sc"] + shift, chosen[model.column], **look)
     axis.plot([-0.3, 1.1], [-0.3, 1.1], **style.START)
     axis.annotate("S = S0", (1.1, 1.1), xytext=(4, -8), textcoords="offset points", fontsize=8)
     axis.set(xlabel="initial S0 - Sc", ylabel="final S - Sc", ylim=(-0.4, 1.2))
@@ -365,24 +367,21 @@ def _draw_change(axis: Axes, table: pd.DataFrame) -> None:
     for kind in (SLOW, FAST):
         rows = table[(table["case"] == kind) & (table["pulse"] == 1.0)]
         rows = rows[rows["S0 - Sc"].abs() <= CLOSE]
-        for model, column in MODELS.items():
-            look = style.marker(model, fillstyle="none" if kind == FAST else "full", markersize=6)
-            axis.plot(rows["S0 - Sc"], rows[column] - rows["S0 - Sc"], **look)
-        for model, d in (("ca", 1.0), ("pde", 0.0)):
+        for model in COMPARED:
+            look = model.markers(fillstyle="none" if kind == FAST else "full", markersize=6)
+            axis.plot(rows["S0 - Sc"], rows[model.column] - rows["S0 - Sc"], **look)
+        for model, d in ((AUTOMATON, 1.0), (BCRE, 0.0)):
             after = [slope_after_thin_pulse(scene_of(kind, place, 1.0), d) for place in places]
-            axis.plot(places, after - places, **style.MODELS[model])
+            axis.plot(places, after - places, **model.line)
     axis.set_yscale("symlog", linthresh=1e-5)
     axis.set(xlabel="initial S0 - Sc", ylabel="change S - S0", ylim=(-5e-6, 0.05))
     axis.set_title("pulse 1, v = 0.1 full, v = 2.5 hollow; closed form", loc="left")
 
 
 def _draw_repeated(axis: Axes, points: pd.DataFrame) -> None:
-    for (_, _, model), line in points.groupby(["S0 - Sc", "pulse", "model"]):
-        look = {
-            **style.MODELS[str(model)],
-            "marker": style.MARKERS[str(model)],
-            "fillstyle": "none",
-        }
+    for (_, _, name), line in points.groupby(["S0 - Sc", "pulse", "model"]):
+        model = MODELS[str(name)]
+        look = model.line | {"marker": model.marker, "fillstyle": "none"}
         axis.plot(line["pulses"], line["S - Sc"], **look)
     for excess, pulse in SEQUENCES:
         axis.annotate(

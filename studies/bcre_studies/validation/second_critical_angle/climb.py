@@ -13,13 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-import bcre_pde
-from bcre_studies.models.simulate import (
-    as_run,
-    effective_problem_of,
-    problem_of,
-    run_automaton,
-)
+from bcre_studies.models.effective import effective
+from bcre_studies.models.registry import BCRE, EFFECTIVE, Model
 from bcre_studies.observables.outcome import Outcome, decided, outcome
 from bcre_studies.scenes.scene import Scene, load
 
@@ -41,31 +36,29 @@ def pulse_scene(excess: float, pulse: float) -> Scene:
     return scene.with_changes(
         until=UNTIL,
         **{"surface.0.slope": slope, "rolling.0.amplitude": pulse},
-        **{"rolling.0.centre": CENTRE},
+        **{"rolling.0.centre": CENTRE, "solver.tolerance": SOLVER_TOLERANCE},
     )
 
 
-def climb(model: str, cells: int, excess: float, pulse: float) -> Outcome:
+def climb(model: Model, cells: int, excess: float, pulse: float) -> Outcome:
     """What becomes of the pulse.
 
     Parameters
     ----------
-    model: ``"ca"``, ``"pde"`` or ``"pde effective"`` (:func:`effective_problem`).
+    model: the effective one has the coefficients of :func:`effective_scene`.
     cells: the grid; 100 cells are d = 1.
     excess: S0 - Sc.
     pulse: amplitude, a length.
     """
     scene = pulse_scene(excess, pulse)
-    if model == "ca":
-        return outcome(run_automaton(scene.with_changes(cells=cells), TIMES, decided), CENTRE)
-    problem = effective_problem(scene) if model == "pde effective" else problem_of(scene)
-    solution = bcre_pde.solve(problem, TIMES, cells, tolerance=SOLVER_TOLERANCE, stop=decided)
-    return outcome(as_run(scene, solution), CENTRE)
+    if model is EFFECTIVE:
+        model, scene = BCRE, effective_scene(scene)
+    return outcome(model.run(scene, TIMES, cells, decided), CENTRE)
 
 
-def effective_problem(scene: Scene) -> bcre_pde.Problem:
-    """BCRE with the automaton's D_eff = 0.145, kappa_eff = 0.005 of the paper's d = dt = 1."""
-    return effective_problem_of(scene.with_changes(cells=100, step=1.0))
+def effective_scene(scene: Scene) -> Scene:
+    """With the automaton's D_eff = 0.145, kappa_eff = 0.005 of the paper's d = dt = 1."""
+    return effective(scene.with_changes(cells=100, step=1.0))
 
 
 @dataclass(frozen=True)
@@ -86,7 +79,7 @@ class Bracket:
         return (self.high - self.low) / 2
 
 
-def threshold(model: str, grids: tuple[int, ...], pulse: float, within: Bracket) -> Bracket:
+def threshold(model: Model, grids: tuple[int, ...], pulse: float, within: Bracket) -> Bracket:
     """S0 - Sc from which on the pulse climbs: a bracket that holds on every grid.
 
     Bisected on the first grid; where it does not hold on a further one it is widened until it does.

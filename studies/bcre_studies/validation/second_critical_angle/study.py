@@ -36,13 +36,15 @@ from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.compare import Comparison
 from bcre_studies.comparison.rounding import shown, to_error
 from bcre_studies.comparison.verdict import Verdict, verdict_of, within, worst
+from bcre_studies.models.bcre import problem_of
+from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED, EFFECTIVE, Model
 from bcre_studies.observables.outcome import Outcome
 from bcre_studies.reporting import style
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 from bcre_studies.validation.second_critical_angle.climb import (
     Bracket,
     climb,
-    effective_problem,
+    effective_scene,
     pulse_scene,
     threshold,
 )
@@ -67,6 +69,7 @@ OUTCOME_WHY = "the same word, by the definitions of ``outcome`` and at t = 3000"
 
 SD, OUTCOME, THRESHOLD = "Sd - Sc", "runs to the top?", "threshold S0 - Sc"
 SD_CALIBRATED = "Sd - Sc, calibrated"
+FINER = "automaton d/4"
 QUANTITIES = (SD, OUTCOME, THRESHOLD, SD_CALIBRATED)
 
 PARAMETERS = (
@@ -112,7 +115,7 @@ def sd_row(v: float, D: float, gamma: float, d: float) -> dict[str, Any]:
     material = bcre_pde.Material(v, D, gamma, Sc=0.5)
     return {
         **_head(SD, material, d),
-        "automaton d/4": shown(measure_sd_automaton(material, d / 4)),
+        FINER: shown(measure_sd_automaton(material, d / 4)),
         **Comparison(
             measure_sd_automaton(material, d),
             measure_sd_pde(material),
@@ -131,7 +134,7 @@ def calibrated_row(v: float, D: float, gamma: float, d: float) -> dict[str, Any]
     left = replace(material, D=rule.diffusion_left())
     return {
         **_head(SD_CALIBRATED, material, d),
-        "automaton d/4": shown(measure_sd_of(calibrated_rule(material, d / 4))),
+        FINER: shown(measure_sd_of(calibrated_rule(material, d / 4))),
         **Comparison(
             measure_sd_of(rule),
             measure_sd_pde(material),
@@ -145,23 +148,20 @@ def calibrated_row(v: float, D: float, gamma: float, d: float) -> dict[str, Any]
 
 def outcome_row(excess: float, pulse: float) -> dict[str, Any]:
     """yes, starts or no, in both models; BCRE on two grids."""
-    words = {model: climb(model, 2 * CELLS, excess, pulse) for model in ("pde", "pde effective")}
-    automaton, finer = (climb("ca", cells, excess, pulse) for cells in (CELLS, 4 * CELLS))
-    resolved = climb("pde", 4 * CELLS, excess, pulse) == words["pde"]
-    resolved_effective = climb("pde effective", CELLS, excess, pulse) == words["pde effective"]
+    grids = {AUTOMATON: CELLS, BCRE: 2 * CELLS, EFFECTIVE: 2 * CELLS}
+    words = {model: climb(model, cells, excess, pulse) for model, cells in grids.items()}
+    automaton, pde, effective = words.values()
     verdict = verdict_of(
-        float(automaton != words["pde"]),
-        resolved,
-        float(automaton != words["pde effective"]),
-        resolved_effective,
+        float(automaton != pde),
+        climb(BCRE, 4 * CELLS, excess, pulse) == pde,
+        float(automaton != effective),
+        climb(EFFECTIVE, CELLS, excess, pulse) == effective,
         tolerance=0.0,
     )
     return {
         **_head(OUTCOME, _figure1(), 1.0, excess, pulse),
-        "automaton d/4": str(finer),
-        "automaton": str(automaton),
-        "pde": str(words["pde"]),
-        "pde_effective": str(words["pde effective"]),
+        FINER: str(climb(AUTOMATON, 4 * CELLS, excess, pulse)),
+        **{model.column: str(word) for model, word in words.items()},
         "verdict": str(verdict),
     }
 
@@ -169,14 +169,14 @@ def outcome_row(excess: float, pulse: float) -> dict[str, Any]:
 def threshold_row(pulse: float) -> dict[str, Any]:
     """S0 - Sc from which on the pulse climbs, in both models."""
     whole = Bracket(LOWEST, HIGHEST)
-    grids = {"ca": (CELLS,), "pde": (CELLS, 2 * CELLS), "pde effective": (CELLS, 2 * CELLS)}
+    grids = {AUTOMATON: (CELLS,), BCRE: (CELLS, 2 * CELLS), EFFECTIVE: (CELLS, 2 * CELLS)}
     automaton, pde, effective = (
         threshold(model, cells, pulse, whole) for model, cells in grids.items()
     )
-    finer = threshold("ca", (4 * CELLS,), pulse, whole)
+    finer = threshold(AUTOMATON, (4 * CELLS,), pulse, whole)
     return {
         **_head(THRESHOLD, _figure1(), 1.0, pulse=pulse),
-        "automaton d/4": to_error(finer.value, finer.error),
+        FINER: to_error(finer.value, finer.error),
         **Comparison(
             to_error(automaton.value, automaton.error),
             bcre_pde.Measured(pde.value, pde.error),
@@ -205,8 +205,7 @@ def _head(
 
 
 def _figure1() -> bcre_pde.Material:
-    material = pulse_scene(0.0, 0.0).material
-    return bcre_pde.Material(material.v, material.D, material.gamma, material.Sc)
+    return problem_of(pulse_scene(0.0, 0.0)).material
 
 
 def _continuous(material: bcre_pde.Material) -> float:
@@ -218,12 +217,12 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     table = tables["comparison"]
     sd, outcomes, thresholds, calibrated = (_of(table, quantity) for quantity in QUANTITIES)
     return [
-        _closed_form_claim(sd, "automaton", "the automaton", AUTOMATON_TOLERANCE),
-        _closed_form_claim(sd, "pde", "BCRE", PDE_TOLERANCE),
+        _closed_form_claim(sd, AUTOMATON, "the automaton", AUTOMATON_TOLERANCE),
+        _closed_form_claim(sd, BCRE, "BCRE", PDE_TOLERANCE),
         _sd_claim(sd),
         _outcome_claim(outcomes),
         _threshold_claim(thresholds, sd.iloc[0]),
-        _closed_form_claim(calibrated, "automaton", CALIBRATED_AUTOMATON, AUTOMATON_TOLERANCE),
+        _closed_form_claim(calibrated, AUTOMATON, CALIBRATED_AUTOMATON, AUTOMATON_TOLERANCE),
         _calibrated_claim(calibrated, sd),
     ]
 
@@ -235,7 +234,8 @@ def _of(table: pd.DataFrame, quantity: str) -> pd.DataFrame:
 CALIBRATED_AUTOMATON = "the calibrated automaton"
 
 
-def _closed_form_claim(rows: pd.DataFrame, column: str, who: str, tolerance: float) -> Claim:
+def _closed_form_claim(rows: pd.DataFrame, model: Model, who: str, tolerance: float) -> Claim:
+    column = model.column
     pairs = list(zip(rows[column], rows[f"{column}_theory"], strict=True))
     gap = max(abs(measured / theory - 1) for measured, theory in pairs)
     return Claim(
@@ -263,9 +263,9 @@ def _sd_claim(rows: pd.DataFrame) -> Claim:
         f"both have one, at different slopes: the automaton's Sd - Sc is smaller by {smaller}, "
         f"because its cells add v d/2 to D. With D_eff the difference is {left}: the expansion in "
         f"Pe fails at Pe = {beyond or 'none'} (25 is that of the paper's figures 2 and 3). At "
-        f"figure 1's parameters the models disagree between {figure1['automaton']:.4g} and "
-        f"{figure1['pde']:.4g}; cells four times smaller raise the automaton's to "
-        f"{figure1['automaton d/4']:.4g}",
+        f"figure 1's parameters the models disagree between {figure1.automaton:.4g} and "
+        f"{figure1.pde:.4g}; cells four times smaller raise the automaton's to "
+        f"{figure1[FINER]:.4g}",
         f"{TOLERANCE:.0%} {WHY}",
     )
 
@@ -289,11 +289,11 @@ def _calibrated_claim(rows: pd.DataFrame, upwind: pd.DataFrame) -> Claim:
 
 
 def _outcome_claim(rows: pd.DataFrame) -> Claim:
-    differing = rows[rows["automaton"] != rows["pde"]]
+    differing = rows[rows.automaton != rows.pde]
     unresolved = int((rows["verdict"] == Verdict.UNRESOLVED).sum())
     cases = ", ".join(
-        f"{row['S0 - Sc']:g} and pulse {row['pulse']:g} ({row['automaton']}/{row['pde']}, "
-        f"effective {row['pde_effective']}, d = 1/4 {row['automaton d/4']})"
+        f"{row['S0 - Sc']:g} and pulse {row['pulse']:g} ({row.automaton}/{row.pde}, "
+        f"effective {row.pde_effective}, d = 1/4 {row[FINER]})"
         for _, row in differing.iterrows()
     )
     return Claim(
@@ -314,15 +314,15 @@ def _threshold_claim(rows: pd.DataFrame, sd: Any) -> Claim:
         "threshold against pulse",
         "A pulse of given size climbs from the same slope on in both models.",
         worst(rows["verdict"]),
-        f"pulse {small['pulse']:g}: S0 - Sc = {small['automaton']:.3g} in the automaton, "
-        f"{small['pde']:.3g} in BCRE, which is Sd - Sc ({sd['automaton_theory']:.4g}, "
-        f"{sd['pde_theory']:.4g}) on a slope of finite length; pulse {large['pulse']:g}: "
-        f"{large['automaton']:.3g} and {large['pde']:.3g}. So Sd is the threshold for "
+        f"pulse {small['pulse']:g}: S0 - Sc = {small.automaton:.3g} in the automaton, "
+        f"{small.pde:.3g} in BCRE, which is Sd - Sc ({sd.automaton_theory:.4g}, "
+        f"{sd.pde_theory:.4g}) on a slope of finite length; pulse {large['pulse']:g}: "
+        f"{large.automaton:.3g} and {large.pde:.3g}. So Sd is the threshold for "
         "infinitesimal pulses, and a finite pulse, whose surface wave climbs at gamma R, brings "
         "the pile down at less. With D_eff and kappa_eff at most "
         f"{rows['difference_effective'].max():.1g} of the difference of up to "
         f"{rows['difference'].max():.2g} is left; with d = 1/4 the automaton's thresholds are "
-        f"{small['automaton d/4']:.3g} and {large['automaton d/4']:.3g}",
+        f"{small[FINER]:.3g} and {large[FINER]:.3g}",
         f"{TOLERANCE:.0%} {WHY}",
     )
 
@@ -334,11 +334,8 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
     _draw_sd(axes[0], _of(table, SD), _of(table, SD_CALIBRATED))
     _draw_outcomes(axes[1], _of(table, OUTCOME))
     _draw_thresholds(axes[2], _of(table, THRESHOLD))
-    style.legend(figure, style.MODELS, markers=True)
+    style.legend(figure, COMPARED, markers=True)
     return figure
-
-
-COLUMNS = {"ca": "automaton", "pde": "pde", "pde effective": "pde_effective"}
 
 
 def _draw_sd(axis: Axes, rows: pd.DataFrame, calibrated: pd.DataFrame) -> None:
@@ -346,13 +343,12 @@ def _draw_sd(axis: Axes, rows: pd.DataFrame, calibrated: pd.DataFrame) -> None:
     rule, whose step counts too."""
     Pe = np.geomspace(0.1, 40, 200)
     ratio = 4 * (np.sqrt(1 + Pe) - 1) ** 2 / Pe**2
-    for model, y in (("ca", ratio), ("pde", np.ones_like(Pe)), ("pde effective", 1 / (1 + Pe / 2))):
-        axis.plot(Pe, y, **style.MODELS[model])
-    for model, column in COLUMNS.items():
-        y = (rows[column] / rows["pde_theory"]).astype(float)
-        axis.plot(rows["v"] * rows["d"] / rows["D"], y, **style.marker(model))
-    y = (calibrated["automaton"] / calibrated["pde_theory"]).astype(float)
-    look = style.marker("ca", marker="D", hollow=True)
+    for model, y in zip(COMPARED, (ratio, np.ones_like(Pe), 1 / (1 + Pe / 2)), strict=True):
+        axis.plot(Pe, y, **model.line)
+        measured = (rows[model.column] / rows["pde_theory"]).astype(float)
+        axis.plot(rows["v"] * rows["d"] / rows["D"], measured, **model.markers())
+    y = (calibrated.automaton / calibrated["pde_theory"]).astype(float)
+    look = AUTOMATON.markers(marker="D", hollow=True)
     axis.plot(calibrated["v"] * calibrated["d"] / calibrated["D"], y, **look, label="calibrated")
     axis.legend(loc="lower left")
     axis.set(xscale="log", ylim=(0, 1.1), xlabel="cell Peclet number v d/D")
@@ -363,11 +359,11 @@ def _draw_sd(axis: Axes, rows: pd.DataFrame, calibrated: pd.DataFrame) -> None:
 def _draw_outcomes(axis: Axes, rows: pd.DataFrame) -> None:
     """Filled: yes; half: starts; hollow: no. Small shifts keep the three models apart."""
     fills = {Outcome.YES: "full", Outcome.STARTS: "left", Outcome.NO: "none"}
-    for shift, (model, column) in zip((-0.25, 0.0, 0.25), COLUMNS.items(), strict=True):
+    for shift, model in zip((-0.25, 0.0, 0.25), COMPARED, strict=True):
         for word, fill in fills.items():
-            chosen = rows[rows[column] == word]
+            chosen = rows[rows[model.column] == word]
             place = chosen["pulse"].map(PULSES.index) + shift
-            look = style.marker(model, fillstyle=fill, markerfacecoloralt="white", markersize=6)
+            look = model.markers(fillstyle=fill, markerfacecoloralt="white", markersize=6)
             axis.plot(place, chosen["S0 - Sc"], **look)
     axis.set_xticks(range(len(PULSES)), ["$10^{-6}$", "1", "10"])
     axis.set(xlim=(-0.6, len(PULSES) - 0.4), xlabel="pulse amplitude (length)", ylabel="S0 - Sc")
@@ -377,16 +373,15 @@ def _draw_outcomes(axis: Axes, rows: pd.DataFrame) -> None:
 def _draw_thresholds(axis: Axes, rows: pd.DataFrame) -> None:
     """The closed forms are the limit of small pulses."""
     material = _figure1()
-    limits = {
-        "ca": bcre_ca.theory.second_critical_excess(material.v, material.D, material.gamma, 1.0),
-        "pde": _continuous(material),
-        "pde effective": _continuous(effective_problem(pulse_scene(0.0, 0.0)).material),
-    }
-    for model, column in COLUMNS.items():
-        axis.axhline(limits[model], **{**style.MODELS[model], "linewidth": 1.0})
-        axis.plot(
-            rows["pulse"], rows[column], **style.marker(model, markersize=6, fillstyle="none")
-        )
+    limits = (
+        bcre_ca.theory.second_critical_excess(material.v, material.D, material.gamma, 1.0),
+        _continuous(material),
+        _continuous(problem_of(effective_scene(pulse_scene(0.0, 0.0))).material),
+    )
+    for model, limit in zip(COMPARED, limits, strict=True):
+        axis.axhline(limit, **model.line | {"linewidth": 1.0})
+        look = model.markers(markersize=6, fillstyle="none")
+        axis.plot(rows["pulse"], rows[model.column], **look)
     axis.set(xscale="log", ylim=(0, 2.8), xlabel="pulse amplitude (length)")
     axis.set_ylabel("threshold S0 - Sc")
     axis.set_title("climbs from here on; lines: Sd - Sc", loc="left")

@@ -15,10 +15,10 @@ from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.difference import relative_difference
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict
-from bcre_studies.models.simulate import rule_of
+from bcre_studies.models.automaton import rule_of
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 SCENES: dict[str, dict[str, float]] = {
     "figure1": {},

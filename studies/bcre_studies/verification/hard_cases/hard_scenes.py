@@ -10,7 +10,7 @@ import numpy as np
 
 import bcre_pde
 from bcre_pde import Ends, exact
-from bcre_studies.models.simulate import problem_of
+from bcre_studies.models.bcre import problem_of
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, load
 

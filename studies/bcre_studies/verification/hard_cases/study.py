@@ -20,14 +20,14 @@ no solution that its grid would converge to. The table ``scarp`` refines both: m
 the scarp at t = 250 with kappa = 0 and kappa = 0.005, and the automaton, whose cell takes the
 part of the curvature term, kappa_eff = gamma d/2, so that it too depends on its grid.
 
-The tables ``scarp``, ``adaptive_step`` and ``faults`` are those of the modules ``scarp_grids``,
-``adaptive_step`` and ``faults``.
+The tables ``scarp`` and ``adaptive_step`` are those of the modules ``scarp_grids`` and
+``adaptive_step``.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, cast, get_args
 
 import numpy as np
 import pandas as pd
@@ -38,10 +38,10 @@ from bcre_ca.rule import Scheme
 from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.models.registry import AUTOMATON, BCRE, Look
 from bcre_studies.reporting import style
-from bcre_studies.robustness import faults
 from bcre_studies.scenes.domain import Array
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 from bcre_studies.verification.hard_cases import adaptive_step, scarp_grids
 from bcre_studies.verification.hard_cases.hard_scenes import HardScene, long_run, scenes
 
@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-SCHEMES: tuple[Scheme, ...] = ("upwind", "calibrated", "limited")
+SCHEMES: tuple[Scheme, ...] = get_args(Scheme)
 MASS = 1e-12
 SURVIVES, REFUSED, FAILS = "survives", "refused before the start", "fails"
 FRAMES = 5
@@ -60,7 +60,7 @@ LEAST_MASS_ERROR = 1e-13
 Row = dict[str, Any]
 
 
-class Case(NamedTuple):
+class Attempt(NamedTuple):
     """A scene in one model; ``scheme`` and ``step`` are the automaton's."""
 
     scene: str
@@ -70,22 +70,25 @@ class Case(NamedTuple):
 
 
 def run() -> dict[str, pd.DataFrame]:
-    """One row a scene and model; the scarp, grid by grid; steps that adapt; faults."""
+    """One row a scene and model; the scarp, grid by grid; steps that adapt."""
     cases = [case for scene in [*scenes().values(), long_run()] for case in _cases(scene)]
     return {
         "comparison": pd.DataFrame(each(_try, cases, "hard_cases")),
         "scarp": scarp_grids.run(),
         "adaptive_step": adaptive_step.run(),
-        "faults": faults.try_all(),
     }
 
 
-def _cases(scene: HardScene) -> list[Case]:
-    automaton = [Case(scene.name, "ca", s, step) for s in SCHEMES for step in scene.steps]
-    return automaton if scene.name == long_run().name else [*automaton, Case(scene.name, "pde")]
+def _cases(scene: HardScene) -> list[Attempt]:
+    automaton = [
+        Attempt(scene.name, AUTOMATON.name, s, step) for s in SCHEMES for step in scene.steps
+    ]
+    return (
+        automaton if scene.name == long_run().name else [*automaton, Attempt(scene.name, BCRE.name)]
+    )
 
 
-class Outcome(NamedTuple):
+class Summary(NamedTuple):
     """What is read off a run: of all frames the smallest and the largest R, of the last one h."""
 
     x: Array
@@ -96,15 +99,15 @@ class Outcome(NamedTuple):
     lowered: int = 0
 
 
-def _try(case: Case) -> Row:
-    scene = long_run() if case.scene == long_run().name else scenes()[case.scene]
-    row = {"scene": case.scene, "model": case.model}
+def _try(attempt: Attempt) -> Row:
+    scene = long_run() if attempt.scene == long_run().name else scenes()[attempt.scene]
+    row = {"scene": attempt.scene, "model": attempt.model}
     row |= {"scheme": "", "step": ""}
-    if case.model == "ca":
-        row |= {"scheme": case.scheme, "step": str(case.step)}
+    if attempt.model == AUTOMATON.name:
+        row |= {"scheme": attempt.scheme, "step": str(attempt.step)}
     try:
         with np.errstate(all="ignore"):
-            end = _automaton(scene, case) if case.model == "ca" else _pde(scene)
+            end = _automaton(scene, attempt) if attempt.model == AUTOMATON.name else _pde(scene)
     except (bcre_pde.SolveError, FloatingPointError, ValueError) as failure:
         return row | _refusal(failure)
     verdict = SURVIVES
@@ -137,7 +140,7 @@ def _decade(error: float) -> float:
     return float(f"1e{math.ceil(math.log10(max(error, LEAST_MASS_ERROR)))}")
 
 
-def _slope(end: Outcome) -> float | str:
+def _slope(end: Summary) -> float | str:
     if end.x.size < 2:
         return ""
     return round(float(-np.polyfit(end.x, end.h, 1)[0]), 3) + 0.0
@@ -149,15 +152,15 @@ def rule_for(scene: HardScene, scheme: Scheme) -> bcre_ca.Rule:
     return bcre_ca.Rule(m.v, m.D, m.gamma, m.Sc, scene.d, 1.0, scheme=scheme, kappa=m.kappa)
 
 
-def _automaton(scene: HardScene, case: Case) -> Outcome:
-    rule, x = rule_for(scene, case.scheme), scene.centres()
+def _automaton(scene: HardScene, attempt: Attempt) -> Summary:
+    rule, x = rule_for(scene, attempt.scheme), scene.centres()
     start = bcre_ca.Pile(*scene.problem.initial(x))
     times = [scene.until * (part + 1) / FRAMES for part in range(FRAMES)]
-    step = cast("Any", case.step)
+    step = cast("Any", attempt.step)
     piles = [start, *bcre_ca.frames(start, rule, times, scene.problem.ends, step)]
     end = piles[-1]
     balance = abs(end.mass(rule.d) + end.outflow - start.mass(rule.d))
-    return Outcome(
+    return Summary(
         x,
         balance / _sand(start.h, start.R, rule.d),
         min(float(pile.R.min()) for pile in piles),
@@ -171,12 +174,12 @@ def _sand(h: Array, R: Array, d: float) -> float:
     return d * float(np.abs(h).sum() + R.sum())
 
 
-def _pde(scene: HardScene) -> Outcome:
+def _pde(scene: HardScene) -> Summary:
     times = [scene.until * part / FRAMES for part in range(FRAMES + 1)]
     end = bcre_pde.solve(scene.problem, times, scene.cells)
     mass = end.mass()
     balance = abs(mass[-1] + end.outflow[-1] - mass[0])
-    return Outcome(
+    return Summary(
         end.x,
         balance / _sand(end.h[0], end.R[0], end.dx),
         float(end.R.min()),
@@ -186,7 +189,7 @@ def _pde(scene: HardScene) -> Outcome:
 
 
 def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
-    """Finite numbers, mass, failures that say where; the scarp; steps that adapt; faults."""
+    """Finite numbers, mass, failures that say where; the scarp; steps that adapt."""
     table = tables["comparison"]
     return [
         _finite(tables),
@@ -195,7 +198,6 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
         _not_negative(table),
         scarp_grids.claim(tables["scarp"]),
         adaptive_step.claim(tables["adaptive_step"]),
-        _faults(tables["faults"]),
     ]
 
 
@@ -254,7 +256,7 @@ def _not_negative(table: pd.DataFrame) -> Claim:
     share = -negative["smallest_R"].astype(float) / negative["largest_R"].astype(float)
     most = f", at most {share.max():.1%} of the largest R" if len(negative) else ""
     scene = f" ({negative.loc[share.idxmax(), 'scene']})" if len(negative) else ""
-    automaton = int((negative["model"] == "ca").sum())
+    automaton = int((negative["model"] == AUTOMATON.name).sum())
     return Claim(
         name="R >= 0",
         statement="R stays >= 0 in both models.",
@@ -264,18 +266,6 @@ def _not_negative(table: pd.DataFrame) -> Claim:
         "differences of high order undershoot ahead of a scarp that a cell cannot resolve, and "
         "exchange nothing there",
         tolerance="1e-12 of the largest R: rounding",
-    )
-
-
-def _faults(table: pd.DataFrame) -> Claim:
-    good = table["verdict"] == "as expected"
-    others = "" if good.all() else f"; not so: {', '.join(table.loc[~good, 'fault'])}"
-    return Claim(
-        name="faults",
-        statement="Every fault tried ended as it should.",
-        verdict=_word(good.all()),
-        evidence=f"{int(good.sum())} of {len(table)} did{others}",
-        tolerance="what should come of each stands in the table before it is tried",
     )
 
 
@@ -296,15 +286,11 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
 
 
 COLUMNS = {
-    ("ca", "upwind", "auto"): "upwind",
-    ("ca", "calibrated", "auto"): "calibrated",
-    ("ca", "limited", "auto"): "limited",
-    ("ca", "upwind", "fixed"): "upwind, fixed",
-    ("ca", "calibrated", "fixed"): "calibrated, fixed",
-    ("ca", "limited", "fixed"): "limited, fixed",
-    ("pde", "", ""): "BCRE",
-}
-MARKS: dict[str, style.Look] = {
+    (AUTOMATON.name, scheme, step): scheme if step == "auto" else f"{scheme}, fixed"
+    for step in ("auto", "fixed")
+    for scheme in SCHEMES
+} | {(BCRE.name, "", ""): BCRE.label}
+MARKS: dict[str, Look] = {
     "survives": {"marker": "o", "color": "#3b8f5a"},
     "survives, step lowered": {"marker": "v", "color": "#c9962b"},
     REFUSED: {"marker": "s", "color": "#1f5a99", "markerfacecolor": "none"},

@@ -40,8 +40,9 @@ from bcre_pde.explicit import ExplicitMethod
 from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.models.registry import AUTOMATON, BCRE, MODELS, Look
 from bcre_studies.reporting import style
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 from bcre_studies.verification.stability.amplification import Numbers, Variant, rule_with, stable
 from bcre_studies.verification.stability.growth import (
     PDE,
@@ -87,15 +88,15 @@ ANGLES = theory.ANGLES[::16]
 Test = Callable[[Numbers], bool]
 
 
-class Case(NamedTuple):
-    """One plane of one model: the automaton's variant or BCRE's method."""
+class Diagram(NamedTuple):
+    """A plane of steps for one model: the automaton's variant or BCRE's method."""
 
     model: str
     variant: Variant | ExplicitMethod
     plane: str
 
     def limits(self) -> tuple[float, float]:
-        if self.model == "ca":
+        if self.model == AUTOMATON.name:
             return AUTOMATON_LIMITS[self.plane]
         return (DOP853_LIMITS if self.variant == "DOP853" else PDE_LIMITS)[self.plane]
 
@@ -105,7 +106,7 @@ class Case(NamedTuple):
 
     def grows(self) -> Test:
         """Measured."""
-        if self.model == "ca":
+        if self.model == AUTOMATON.name:
             return lambda numbers: automaton_grows(numbers, cast("Variant", self.variant))
         return lambda numbers: pde_grows(numbers, cast("ExplicitMethod", self.variant))
 
@@ -115,11 +116,11 @@ class Case(NamedTuple):
 
     def no_visible_growth(self) -> Test:
         """|G| <= 10^(1/n) in the n steps that are taken: growth that they can show."""
-        steps = STEPS if self.model == "ca" else PDE[1]
+        steps = STEPS if self.model == AUTOMATON.name else PDE[1]
         return self._no_faster_than(10 ** (1 / steps) - 1)
 
     def _no_faster_than(self, growth: float) -> Test:
-        if self.model == "ca":
+        if self.model == AUTOMATON.name:
             return lambda numbers: stable(numbers, cast("Variant", self.variant), growth)
         return lambda numbers: _pde_stable(cast("ExplicitMethod", self.variant), growth, numbers)
 
@@ -129,7 +130,7 @@ class Case(NamedTuple):
 
     def bound(self, numbers: Numbers) -> float:
         """The model's own largest step, in steps of these numbers."""
-        if self.model == "ca":
+        if self.model == AUTOMATON.name:
             rule = rule_with(numbers, cast("Variant", self.variant))
             pile = bcre_ca.Pile(np.zeros(8), np.ones(8))
             return bcre_ca.largest_stable_step(pile, rule, "periodic")
@@ -147,8 +148,8 @@ def _pde_stable(method: ExplicitMethod, growth: float, numbers: Numbers) -> bool
 
 def run() -> dict[str, pd.DataFrame]:
     """One row a plane; the planes row by row and their boundaries; positivity; LSODA and BDF."""
-    cases = [Case("ca", variant, plane) for variant in VARIANTS for plane in PLANES]
-    cases += [Case("pde", method, plane) for method in METHODS for plane in PLANES]
+    cases = [Diagram(AUTOMATON.name, variant, plane) for variant in VARIANTS for plane in PLANES]
+    cases += [Diagram(BCRE.name, method, plane) for method in METHODS for plane in PLANES]
     measured = each(_measure, cases, "stability")
     layers = each(_positivity, VARIANTS, "stability, R >= 0")
     return {
@@ -163,13 +164,13 @@ def run() -> dict[str, pd.DataFrame]:
 Row = dict[str, Any]
 
 
-def _measure(case: Case) -> tuple[Row, list[Row], list[Row]]:
-    head: Row = {"model": case.model, "variant": str(case.variant), "plane": case.plane}
-    boundaries = [head | row for row in _boundaries(case)]
-    x, y = (limit * (np.arange(POINTS) + 0.5) / POINTS for limit in case.limits())
-    tests = case.grows(), case.predicted(), case.accepted
+def _measure(diagram: Diagram) -> tuple[Row, list[Row], list[Row]]:
+    head: Row = {"model": diagram.model, "variant": str(diagram.variant), "plane": diagram.plane}
+    boundaries = [head | row for row in _boundaries(diagram)]
+    x, y = (limit * (np.arange(POINTS) + 0.5) / POINTS for limit in diagram.limits())
+    tests = diagram.grows(), diagram.predicted(), diagram.accepted
     grows, predicted, accepted = (
-        np.array([[test(case.numbers(a, b)) for a in x] for b in y]) for test in tests
+        np.array([[test(diagram.numbers(a, b)) for a in x] for b in y]) for test in tests
     )
     rows = [
         head | {"y": round(float(b), 4), "stable": "".join("01"[not cell] for cell in line)}
@@ -198,13 +199,13 @@ def _measure(case: Case) -> tuple[Row, list[Row], list[Row]]:
     return summary, boundaries, rows
 
 
-def _boundaries(case: Case) -> list[Row]:
+def _boundaries(diagram: Diagram) -> list[Row]:
     """Along every ray, in the units of the plane: measured, predicted, and the model's own."""
-    width, height = case.limits()
-    grows, predicted, visible = case.grows(), case.predicted(), case.no_visible_growth()
+    width, height = diagram.limits()
+    grows, predicted, visible = diagram.grows(), diagram.predicted(), diagram.no_visible_growth()
     rows = []
     for angle in (np.arange(RAYS) + 0.5) / RAYS * np.pi / 2:
-        ray = case.numbers(width * np.cos(angle), height * np.sin(angle))
+        ray = diagram.numbers(width * np.cos(angle), height * np.sin(angle))
         expected = _last(predicted, ray, 0.02, 2.0)
         shown = _last(visible, ray, 0.02, 2.0)
         found = _last(lambda numbers: not grows(numbers), ray, 0.3 * expected, 2.5 * expected)
@@ -214,7 +215,7 @@ def _boundaries(case: Case) -> list[Row]:
                 "predicted": significant(expected, 3),
                 "visible": significant(shown, 3),
                 "measured": significant(found, 3),
-                "bound": significant(case.bound(ray), 3),
+                "bound": significant(diagram.bound(ray), 3),
             }
         )
     return rows
@@ -297,7 +298,7 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     table = tables["comparison"]
     limited = table["variant"] == "limited"
     dop853 = table["variant"] == "DOP853"
-    automaton = table["model"] == "ca"
+    automaton = table["model"] == AUTOMATON.name
     return [
         _predicted("the automaton's rules", table[automaton & ~limited], LINEAR),
         _predicted("the flux-limited rule", table[limited], LIMITED),
@@ -402,15 +403,15 @@ def _draw_plane(axis: Axes, head: pd.Series[Any], tables: dict[str, pd.DataFrame
         return rows[(rows["variant"] == head["variant"]) & (rows["plane"] == head["plane"])]
 
     variant = next((v for v in VARIANTS if str(v) == head["variant"]), head["variant"])
-    width, height = Case(head["model"], variant, head["plane"]).limits()
-    look = style.MODELS[head["model"]]
+    width, height = Diagram(head["model"], variant, head["plane"]).limits()
+    model = MODELS[head["model"]]
     for row in of("points").itertuples():
         stable_cells = [i for i, mark in enumerate(row.stable) if mark == "1"]
         runs = [(i * width / POINTS, width / POINTS) for i in stable_cells]
         axis.broken_barh(
             _joined(runs),
             (float(row.y) - height / POINTS / 2, height / POINTS),
-            color=look["color"],
+            color=model.color,
             alpha=0.22,
             linewidth=0,
         )
@@ -424,14 +425,13 @@ def _draw_plane(axis: Axes, head: pd.Series[Any], tables: dict[str, pd.DataFrame
         axis.plot(x, y, **line)
     axis.set(xlim=(0, width), ylim=(0, height))
     x_label, y_label = LABELS[head["plane"]]
-    cell = "d" if head["model"] == "ca" else "dx"
+    cell = "d" if model is AUTOMATON else "dx"
     axis.set_xlabel(x_label.replace("dt/d", f"dt/{cell}"))
     axis.set_ylabel(y_label.replace("dt/d", f"dt/{cell}"))
-    name = "automaton" if head["model"] == "ca" else "BCRE"
-    axis.set_title(f"{name}, {head['variant']}", loc="left")
+    axis.set_title(f"{model.label}, {head['variant']}", loc="left")
 
 
-LINES: dict[str, style.Look] = {
+LINES: dict[str, Look] = {
     "predicted": {"color": "black", "linewidth": 1.2, "label": "predicted, |G| = 1"},
     "bound": {
         "color": "0.35",

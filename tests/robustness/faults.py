@@ -1,8 +1,10 @@
-"""Faults tried on purpose: what is done, what should come of it, and what does.
+"""Faults made on purpose: what is done, what should come of it, and what does.
 
-Spoilt scene files (``fuzz``), a store and folders that are damaged or full, runs
-that are killed (``kills``), two at once, one worker or two. All of it happens in
-temporary folders, and what is told does not depend on the machine or the time.
+    python tests/robustness/faults.py     writes reports/quality/faults.csv (or: make faults)
+
+The faults are spoilt scene files (``fuzz``), a store that is damaged, a disk that is full, a
+folder that is closed, and runs that are killed (``kills``). All of it happens in temporary folders,
+and the rows depend neither on the machine nor on the time.
 """
 
 from __future__ import annotations
@@ -14,17 +16,21 @@ import tempfile
 import warnings
 from collections import Counter
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from bcre_studies.models.simulate import rule_of
-from bcre_studies.robustness import fuzz
-from bcre_studies.robustness.kills import Copy, Series, kill_in_turn
+import fuzz
+from bcre_studies.models.automaton import rule_of
 from bcre_studies.running.run import require_runnable, run_scene
 from bcre_studies.scenes.scene import SceneError, load
 from bcre_studies.system import pickles
+from bcre_studies.system.files import REPORTS, replace_text
+from kills import Copy, Series, kill_in_turn, two_at_once
+
+TABLE = REPORTS / "quality" / "faults.csv"
 
 Row = dict[str, str]
 
@@ -32,17 +38,17 @@ EACH = 60
 """Spoilt scenes of each kind."""
 
 RUN = 10
-"""So many of those that are accepted are run, in the automaton for :data:`STEPS` of its steps."""
+"""So many of the accepted ones are run, in the automaton for :data:`STEPS` of its steps."""
 
 STEPS = 20
 FRAMES = 3
 SEED = 1
-STUDY = ("one_variable",)
+STUDY = ("quick",)
 KILLS = 4
 
 # Root may write everywhere; another user may not. The libraries are loaded before.
 _WRITE = """
-import os, resource, signal, sys
+import os, resource, sys
 from pathlib import Path
 from bcre_studies.system.files import replace_bytes
 path, fault = Path(sys.argv[1]), sys.argv[2]
@@ -59,26 +65,13 @@ sys.exit(4)
 """
 
 
-def try_all() -> pd.DataFrame:
-    """One row a fault: fault, done, came, expected, verdict (``as expected`` or ``not``)."""
-    rows = [_spoilt_scenes(kind) for kind in fuzz.KINDS]
-    rows += [_damaged(name) for name in DAMAGES]
-    rows += [_unwritable(fault) for fault in ("full", "forbidden")]
-    with tempfile.TemporaryDirectory() as folder:
-        copy = Copy.make(Path(folder))
-        code = copy.run(STUDY, workers=1)
-        with_one = copy.reports()
-        rows += _killed(kill_in_turn(copy, STUDY, KILLS, SEED))
-        rows += [_worker_counts(code == 0 and copy.reports() == with_one), _two_at_once(copy)]
-    return pd.DataFrame(rows)
-
-
 def _row(fault: str, done: str, came: str, expected: str, good: bool) -> Row:
     verdict = "as expected" if good else "not"
     return {"fault": fault, "done": done, "came": came, "expected": expected, "verdict": verdict}
 
 
-def _spoilt_scenes(kind: str) -> Row:
+def spoilt_scenes(kind: str) -> Row:
+    """What comes of scene files that are spoilt in one way."""
     chance, counts = random.Random(f"{SEED} {kind}"), Counter[str]()
     with tempfile.TemporaryDirectory() as folder:
         for _ in range(EACH):
@@ -99,15 +92,14 @@ def _what_comes_of(path: Path, run: bool) -> str:
     try:
         with warnings.catch_warnings(action="error"):
             scene = load(path)
-            # Nobody's machine is asked for what it has free: the grids are made small instead.
+            # What memory is free must not matter: only small grids are tried.
             if scene.domain.cells > 1000 or (scene.solver.cells or 0) > 1000:
                 return "accepted, not run"
             require_runnable(scene, "both", FRAMES)
             if not run:
                 return "accepted, not run"
             span = min(scene.time.until, STEPS * rule_of(scene).dt)
-            short = scene.with_changes(until=span)
-            (result,) = run_scene(short, "ca", FRAMES)
+            (result,) = run_scene(scene.with_changes(until=span), "ca", FRAMES)
     except SceneError as refusal:
         return "refused" if str(refusal).isprintable() else "crashed"
     except Exception:
@@ -126,7 +118,8 @@ DAMAGES: dict[str, Callable[[bytes], bytes]] = {
 """What may have happened to a stored intermediate result."""
 
 
-def _damaged(name: str) -> Row:
+def damaged(name: str) -> Row:
+    """What comes of a stored result with one of :data:`DAMAGES`."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "tables.pickle"
         pickles.dump(path, {"value": [1.0, 2.0]})
@@ -136,12 +129,13 @@ def _damaged(name: str) -> Row:
             noticed = False
         except LookupError:
             noticed = True
-    came = "noticed, so that it is measured again" if noticed else "taken for whole"
     expected = "noticed, so that it is measured again"
+    came = expected if noticed else "taken for whole"
     return _row("stored result damaged", name, came, expected, noticed)
 
 
-def _unwritable(fault: str) -> Row:
+def unwritable(fault: str) -> Row:
+    """What comes of a write to a disk that is ``full`` or a folder that is ``forbidden``."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "old.csv"
         path.write_bytes(b"old")
@@ -158,7 +152,26 @@ def _unwritable(fault: str) -> Row:
     return _row(names[fault], done[fault], came, expected, good)
 
 
-def _killed(series: Series) -> list[Row]:
+def disturbed_runs() -> list[Row]:
+    """What comes of runs that are killed, have one worker or two, or run two at once."""
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Copy.make(Path(folder))
+        code = copy.run(STUDY, workers=1)
+        with_one = copy.reports()
+        rows = killed(kill_in_turn(copy, STUDY, KILLS, SEED))
+        same = code == 0 and copy.reports() == with_one
+        together = two_at_once(copy, STUDY)
+    expected = "the same bytes"
+    came = expected if same else "other bytes"
+    rows.append(_row("number of workers", "one and two", came, expected, same))
+    expected = "the bytes of one alone"
+    came = expected if together else "a failure, or other bytes"
+    done = "the same study, from an empty store"
+    return [*rows, _row("two runs at once", done, came, expected, together)]
+
+
+def killed(series: Series) -> list[Row]:
+    """One row a kill, and one for the run after them."""
     rows = []
     for sent, whole_group, found in series.rows:
         bad = (found.half, found.lost, found.workers_alive, found.damaged, found.redone)
@@ -174,32 +187,24 @@ def _killed(series: Series) -> list[Row]:
             )
         )
     good = series.equal and series.leftovers == 0
-    came = "the same bytes, no temporary file" if good else "other bytes or temporary files"
-    return [
-        *rows,
-        _row("runs killed", "then one to its end", came, "the same bytes, no temporary file", good),
-    ]
+    expected = "the same bytes, no temporary file"
+    came = expected if good else "other bytes or temporary files"
+    return [*rows, _row("runs killed", "then one to its end", came, expected, good)]
 
 
-def _two_at_once(copy: Copy) -> Row:
-    alone = copy.reports()
-    copy.forget({})
-    codes = [run.wait() for run in [copy.start(STUDY), copy.start(STUDY)]]
-    good = codes == [0, 0] and copy.reports() == alone and copy.leftovers() == 0
-    return _row(
-        "two runs at once",
-        "the same study, from an empty store",
-        "the bytes of one alone" if good else f"exit codes {codes}, or other bytes",
-        "the bytes of one alone",
-        good,
-    )
+ALONE: dict[str, Callable[[], Row]] = {
+    **{kind: partial(spoilt_scenes, kind) for kind in fuzz.KINDS},
+    **{name: partial(damaged, name) for name in DAMAGES},
+    **{fault: partial(unwritable, fault) for fault in ("full", "forbidden")},
+}
+"""The faults of one row each; the others are :func:`disturbed_runs`."""
 
 
-def _worker_counts(good: bool) -> Row:
-    return _row(
-        "number of workers",
-        "one and two",
-        "the same bytes" if good else "other bytes",
-        "the same bytes",
-        good,
-    )
+def main() -> None:
+    """Try every fault and write the table."""
+    table = pd.DataFrame([*(fault() for fault in ALONE.values()), *disturbed_runs()])
+    replace_text(TABLE, table.to_csv(index=False, lineterminator="\n"))
+
+
+if __name__ == "__main__":
+    main()

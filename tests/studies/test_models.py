@@ -1,5 +1,9 @@
+import ast
 import math
+import subprocess
+import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,16 +12,13 @@ import bcre_ca
 import bcre_pde
 import bcre_pde.exact
 import bcre_pde.theory
+import bcre_studies
 from bcre_ca import theory as ca_theory
-from bcre_studies.models.simulate import (
-    as_run,
-    effective_problem_of,
-    frame_times,
-    problem_of,
-    profiles,
-    rule_of,
-    run_automaton,
-)
+from bcre_studies.models.automaton import rule_of
+from bcre_studies.models.bcre import problem_of
+from bcre_studies.models.effective import effective
+from bcre_studies.models.registry import AUTOMATON, BCRE, MODELS
+from bcre_studies.models.run import frame_times, profiles
 from bcre_studies.scenes.scene import load
 
 
@@ -43,7 +44,7 @@ def test_automatic_step_is_four_fifths_of_the_largest_stable_one():
 
 def test_automaton_of_a_scene_is_evolve():
     scene = figure_2()
-    run = run_automaton(scene, [scene.time.until])
+    run = AUTOMATON.run(scene, [scene.time.until])
     h, R = scene.initial(scene.centres())
     expected = bcre_ca.evolve(h, R, rule_of(scene), 20)
     assert run.steps == 20
@@ -53,11 +54,11 @@ def test_automaton_of_a_scene_is_evolve():
 
 def test_step_that_cannot_be_stable_is_refused_with_the_largest_that_would_be():
     with pytest.raises(bcre_ca.UnstableStep, match=r"largest stable step is 0\.370"):
-        run_automaton(figure_2(step=1.0), [4.0])
+        AUTOMATON.run(figure_2(step=1.0), [4.0])
 
 
 def test_run_stops_after_the_frame_that_satisfies_it():
-    run = run_automaton(figure_2(), [1.0, 2.0, 3.0, 4.0], stop=lambda run: run.t[-1] >= 2)
+    run = AUTOMATON.run(figure_2(), [1.0, 2.0, 3.0, 4.0], stop=lambda run: run.t[-1] >= 2)
     assert run.t.tolist() == [1.0, 2.0]
 
 
@@ -65,22 +66,22 @@ def test_run_stops_after_the_frame_that_satisfies_it():
 def test_mass_is_conserved_to_rounding_in_both_models(name):
     scene = load(name)
     times = [0.0, min(scene.time.until, 60.0)]
-    automaton = run_automaton(scene, times)
-    solution = as_run(scene, bcre_pde.solve(problem_of(scene), times, 100))
+    automaton = AUTOMATON.run(scene, times)
+    solution = BCRE.run(scene, times, 100)
     assert automaton.mass_error() <= 1e-12
     assert solution.mass_error() <= 1e-12
     assert (automaton.model, solution.model) == ("ca", "pde")
 
 
 def test_mass_error_is_what_is_missing_relative_to_the_start():
-    run = run_automaton(figure_2(), [0.0, 4.0])
+    run = AUTOMATON.run(figure_2(), [0.0, 4.0])
     short = replace(run, R=run.R * np.array([[1.0], [0.9]]))
     scale = run.d * (np.abs(run.h[0]) + run.R[0]).sum()
     assert short.mass_error() == pytest.approx(0.1 * run.d * run.R[1].sum() / scale, rel=1e-9)
 
 
 def test_profiles_are_one_row_a_time_and_cell():
-    run = run_automaton(figure_2(), [0.0, 2.0, 4.0])
+    run = AUTOMATON.run(figure_2(), [0.0, 2.0, 4.0])
     table = profiles(run, model="ca")
     assert list(table.columns) == ["model", "t", "x", "h", "R"]
     assert len(table) == 300
@@ -89,21 +90,20 @@ def test_profiles_are_one_row_a_time_and_cell():
     assert np.array_equal(last["x"], run.x)
 
 
-def test_problem_of_a_scene_carries_its_material_unless_replaced():
+def test_problem_of_a_scene_carries_its_material():
     scene = figure_2()
     assert problem_of(scene).material == bcre_pde.Material(2.5, 0.1, 0.01, 0.5, 0.0)
-    assert problem_of(scene, D=1.0, kappa=2.0).material == bcre_pde.Material(
-        2.5, 1.0, 0.01, 0.5, 2.0
-    )
+    changed = scene.with_changes(D=1.0, kappa=2.0)
+    assert problem_of(changed).material == bcre_pde.Material(2.5, 1.0, 0.01, 0.5, 2.0)
     assert (problem_of(scene).length, problem_of(scene).ends) == (100.0, "open")
 
 
-def test_effective_problem_adds_what_the_cells_and_steps_of_the_automaton_add():
+def test_effective_scene_adds_what_the_cells_and_steps_of_the_automaton_add():
     scene = figure_2(kappa=0.3)
-    material = effective_problem_of(scene).material
+    material = effective(scene).material
     assert pytest.approx(0.1 + 2.5 / 2 * (1 - 0.5), rel=1e-14) == material.D
     assert material.kappa == pytest.approx(0.3 + 0.005, rel=1e-14)
-    assert effective_problem_of(scene, with_curvature=False).material.kappa == 0.3
+    assert effective(scene, with_curvature=False).material.kappa == 0.3
 
 
 @pytest.mark.parametrize("v", [0.1, 0.7])
@@ -151,8 +151,46 @@ def test_automaton_of_the_climbing_wave_is_first_order_and_the_pde_far_nearer(re
 
     scene = load("climbing_wave").with_changes(cells=400 // refinement, step=0.025 * refinement)
     exact = bcre_pde.exact.climbing_wave(scene.centres(), 2.0, R0, 0.5, 1.3)
-    automaton = run_automaton(scene, [2.0])
+    automaton = AUTOMATON.run(scene, [2.0])
     assert np.abs(automaton.R[-1] - exact).mean() == pytest.approx(1.95e-3 * refinement, rel=0.05)
-    solution = bcre_pde.solve(problem_of(scene), [2.0], scene.domain.cells)
+    solution = BCRE.run(scene, [2.0], scene.domain.cells)
     assert np.abs(solution.R[-1] - exact).mean() <= 1e-6
     assert math.isclose(automaton.t[-1], 2.0)
+
+
+def test_models_are_listed_without_the_libraries_that_run_them():
+    code = (
+        "import sys; from bcre_studies.models.registry import MODELS; "
+        "print(*MODELS, sep=','); heavy = {'numpy', 'numba', 'pde', 'scipy', 'pandas'}; "
+        "print(sorted(heavy & set(sys.modules)))"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert ended.stdout.split("\n")[:2] == ["ca,pde,pde effective,height", "[]"]
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_every_model_runs_a_scene_with_no_more_than_its_name(name):
+    seen = []
+    run = MODELS[name].run(figure_2(), [0.0, 2.0, 4.0], 40, stop=lambda run: seen.append(run.t[-1]))
+    assert run.model == name
+    assert run.h.shape == run.R.shape == (3, 40)
+    assert run.t.tolist() == [0.0, 2.0, 4.0]
+    assert run.mass_error() < 1e-12
+    assert seen in ([], [0.0, 2.0, 4.0])
+
+
+def test_names_of_models_stand_in_the_registry_alone():
+    root = Path(bcre_studies.__file__).parent
+    names = set(MODELS)
+    for path in root.rglob("*.py"):
+        constants = {
+            node.value
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+            if isinstance(node, ast.Constant) and isinstance(node.value, str)
+        }
+        assert path.name == "registry.py" or not constants & names, path
+
+
+def test_every_model_looks_different_and_has_a_column_of_its_own():
+    for what in ("label", "column", "color", "marker"):
+        assert len({getattr(model, what) for model in MODELS.values()}) == len(MODELS)

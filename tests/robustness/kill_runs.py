@@ -1,6 +1,6 @@
-"""Kill runs of `bcre study` at random times and tell what they leave.
+"""Kill runs of `bcre study` at random times and report what they leave.
 
-    python tests/kill_runs.py --kills 100 [--seed 1] [--out kills.csv]
+    python tests/robustness/kill_runs.py --kills 100 [--seed 1] [--out kills.csv]
 
 Works in a temporary copy of the project; the project's own reports and store are not touched.
 Ends with exit code 1 where a file was half or lost, a worker outlived its run, a finished case was
@@ -17,28 +17,22 @@ from pathlib import Path
 
 import pandas as pd
 
-from bcre_studies.robustness.kills import QUICK, Copy, Series, kill_in_turn
+from kills import Copy, Series, kill_in_turn, two_at_once
+
+STUDIES = ("one_variable", "printed_rule")
+"""Studies of a few seconds, with some cases each."""
 
 BAD = ["half", "lost", "workers_alive", "damaged", "redone"]
 
 
 def table_of(series: Series) -> pd.DataFrame:
-    """One row a signal and target: number of kills, and what they left."""
+    """One row a signal and target: the number of kills, and what they left."""
     rows = [
         {"signal": sent.name, "sent to": "group" if whole_group else "run alone", "kills": 1}
         | asdict(found)
         for sent, whole_group, found in series.rows
     ]
     return pd.DataFrame(rows).groupby(["signal", "sent to"], sort=False).sum().reset_index()
-
-
-def two_at_once(copy: Copy) -> bool:
-    """Whether two runs at once both end well and write what one alone writes."""
-    expected = copy.reports()
-    copy.forget({})
-    runs = [copy.start(QUICK), copy.start(QUICK)]
-    codes = [run.wait() for run in runs]
-    return codes == [0, 0] and copy.reports() == expected and copy.leftovers() == 0
 
 
 def main() -> int:
@@ -49,9 +43,9 @@ def main() -> int:
     given = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         copy = Copy.make(Path(folder))
-        copy.run(QUICK)
-        series = kill_in_turn(copy, QUICK, given.kills, given.seed)
-        together = two_at_once(copy)
+        copy.run(STUDIES)
+        series = kill_in_turn(copy, STUDIES, given.kills, given.seed)
+        together = two_at_once(copy, STUDIES)
     table = table_of(series)
     print(table.to_string(index=False))
     print(f"undisturbed run and run after {given.kills} kills write the same: {series.equal}")

@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 import bcre_pde
-from bcre_studies.models.simulate import problem_of, rule_of
-from bcre_studies.robustness import fuzz
+import fuzz
+from bcre_studies import cli
+from bcre_studies.models.automaton import rule_of
+from bcre_studies.models.bcre import problem_of
 from bcre_studies.running.run import require_runnable, run_scene
 from bcre_studies.scenes.scene import SceneError, load
 from bcre_studies.system import memory
@@ -79,19 +81,44 @@ def test_scenes_that_are_spoilt_are_good_before(tmp_path, text):
     runs_to_finite_layers(tried(path)[0])
 
 
-def test_spoilt_scene_ends_the_command_with_exit_2_one_line_and_nothing_written(tmp_path):
+@pytest.fixture
+def spoilt(tmp_path):
+    """Spoils the scene until it is refused; returns its path."""
     chance = random.Random(40)
-    script = "import sys; from bcre_studies.cli import main\nsys.argv[0] = 'bcre'; main()"
-    for kind in fuzz.KINDS:
+
+    def spoilt(kind):
         path = fuzz.write(tmp_path, fuzz.spoil(kind, chance))
         while tried(path)[0] is not None:
             path = fuzz.write(tmp_path, fuzz.spoil(kind, chance))
-        command = [sys.executable, "-c", script, "run", path.name, "--out", "o"]
-        ended = subprocess.run(command, cwd=tmp_path, capture_output=True)
-        assert (ended.returncode, ended.stdout) == (2, b"")
-        assert ended.stderr.startswith(b"bcre: ")
-        assert ended.stderr.count(b"\n") == 1
-        assert {entry.name for entry in tmp_path.iterdir()} == {"scene.toml", "start.csv"}
+        return path
+
+    return spoilt
+
+
+def refuses(ended, folder):
+    code, out, err = ended
+    assert (code, out) == (2, "")
+    assert err.startswith("bcre: ")
+    assert err.count("\n") == 1
+    assert {entry.name for entry in folder.iterdir()} == {"scene.toml", "start.csv"}
+
+
+@pytest.mark.parametrize("kind", fuzz.KINDS)
+def test_spoilt_scene_ends_the_command_with_exit_2_one_line_and_nothing_written(
+    kind, spoilt, tmp_path, monkeypatch, capfd
+):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "argv", ["bcre", "run", spoilt(kind).name, "--out", "o"])
+    with pytest.raises(SystemExit) as ended:
+        cli.main()
+    refuses((ended.value.code, *capfd.readouterr()), tmp_path)
+
+
+def test_spoilt_scene_ends_a_process_of_its_own_likewise(spoilt, tmp_path):
+    script = "import sys; from bcre_studies.cli import main\nsys.argv[0] = 'bcre'; main()"
+    command = [sys.executable, "-c", script, "run", spoilt("deep nesting").name, "--out", "o"]
+    ended = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    refuses((ended.returncode, ended.stdout, ended.stderr), tmp_path)
 
 
 @pytest.mark.parametrize("depth", [300, 50_000])

@@ -1,7 +1,7 @@
 """Runs that are killed, in a copy of the project, and what is left of them.
 
-A run is ``bcre study NAME...``, started in a folder of its own that has a copy of the packages, so
-that the project's own reports and store are never touched.
+A run is ``bcre study NAME...`` in a folder that holds a copy of the packages, so that the project's
+own reports and store are never touched.
 """
 
 from __future__ import annotations
@@ -13,22 +13,22 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+
+import psutil
 
 import bcre_ca
 import bcre_pde
 import bcre_studies
 from bcre_studies.system import pickles
 
-QUICK = ("one_variable", "printed_rule")
-"""Studies of a few seconds, with some cases each."""
-
 SIGNALS = (signal.SIGKILL, signal.SIGINT, signal.SIGTERM)
 
 GRACE = 15.0
-"""Seconds within which the workers of a run must be gone after it; they look twice a second, but
-one that is just being started has to import the libraries first."""
+"""Seconds within which a killed run's workers must be gone. They look twice a second, but one that
+is just being started has to import the libraries first."""
 
 # A shell that starts a command in the background has it ignore SIGINT, and children inherit that.
 _COMMAND = (
@@ -41,7 +41,7 @@ Contents = dict[str, bytes]
 
 @dataclass(frozen=True)
 class Copy:
-    """A copy of the project in ``folder``, whose runs write there."""
+    """A copy of the project in ``folder``, whose runs write there; it has the study ``quick``."""
 
     folder: Path
 
@@ -50,9 +50,13 @@ class Copy:
         for package in (bcre_ca, bcre_pde, bcre_studies):
             source = Path(str(package.__file__)).parent
             shutil.copytree(source, folder / "packages" / source.name)
+        studies = folder / "packages" / "bcre_studies"
+        shutil.copy(Path(__file__).with_name("quick.py"), studies / "validation")
+        with (studies / "catalog.py").open("a") as catalog:
+            catalog.write('\nSTUDIES["quick"] = Entry("validation.quick", "Short cases")\n')
         return cls(folder)
 
-    def start(self, names: tuple[str, ...], workers: int = 2) -> subprocess.Popen[str]:
+    def start(self, names: tuple[str, ...], workers: int = 2) -> subprocess.Popen[bytes]:
         """``bcre study NAME...`` in a process group of its own."""
         environment = os.environ | {
             "PYTHONPATH": str(self.folder / "packages"),
@@ -65,7 +69,6 @@ class Copy:
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
             start_new_session=True,
-            text=True,
         )
 
     def run(self, names: tuple[str, ...], workers: int = 2) -> int:
@@ -79,18 +82,16 @@ class Copy:
         return {str(path.relative_to(folder)): path.read_bytes() for path in paths}
 
     def leftovers(self) -> int:
-        """Temporary files below ``reports/`` and in the store."""
+        """The number of temporary files below ``reports/`` and in the store."""
         folders = (self.folder / "reports", self.folder / ".cache")
         return sum(1 for folder in folders for _ in folder.rglob(".*.part"))
 
-    def intermediates(self) -> dict[Path, int]:
-        """Finished cases and tables in the store, with the times at which they were written."""
-        return {
-            path: path.stat().st_mtime_ns for path in (self.folder / ".cache").rglob("*.pickle")
-        }
+    def stored(self, pattern: str) -> dict[Path, int]:
+        """The files in the store that match, with the times at which they were written."""
+        return {path: path.stat().st_mtime_ns for path in (self.folder / ".cache").glob(pattern)}
 
     def forget(self, old: Contents) -> None:
-        """An empty store, and other reports of an earlier time."""
+        """Empty the store, and put these reports of an earlier time in the place of the present."""
         shutil.rmtree(self.folder / ".cache", ignore_errors=True)
         shutil.rmtree(self.folder / "reports", ignore_errors=True)
         for name, content in old.items():
@@ -119,14 +120,14 @@ def kill_once(
     after: float,
     good: tuple[Contents, Contents],
 ) -> Aftermath | None:
-    """Start a run, kill it after so many seconds, and look; None where it has ended before.
+    """Start a run, kill it after so many seconds, and look; None where it ended before.
 
     Parameters
     ----------
     whole_group: kill its workers as well, as a terminal does, or the run alone.
     good: the contents before and after a run; every report must be one of the two.
     """
-    before, finished = copy.reports(), copy.intermediates()
+    before, finished = copy.reports(), copy.stored("*/*.pickle")
     process = copy.start(names)
     try:
         process.wait(after)
@@ -136,20 +137,15 @@ def kill_once(
     else:
         return None
     alive = _alive_after(process.pid, GRACE)
-    now, still = copy.reports(), copy.intermediates()
+    now, cases = copy.reports(), copy.stored("*/*.pickle")
     return Aftermath(
         half=sum(content not in {old.get(name) for old in good} for name, content in now.items()),
         lost=len(before.keys() - now.keys()),
         leftovers=copy.leftovers(),
         workers_alive=alive,
-        damaged=sum(not _is_whole(path) for path in still),
-        redone=sum(still.get(path, told) != told for path, told in _cases(finished).items()),
+        damaged=sum(not _is_whole(path) for path in copy.stored("**/*.pickle")),
+        redone=sum(cases.get(path, written) != written for path, written in finished.items()),
     )
-
-
-def _cases(intermediates: dict[Path, int]) -> dict[Path, int]:
-    """The finished cases alone: a table's time is when it was last of use."""
-    return {path: told for path, told in intermediates.items() if path.parent.name != ".cache"}
 
 
 def _is_whole(path: Path) -> bool:
@@ -161,7 +157,7 @@ def _is_whole(path: Path) -> bool:
 
 
 def _alive_after(group: int, seconds: float) -> int:
-    """Processes of a group that are still there after so many seconds at most."""
+    """The number of processes of a group that are still there after so many seconds at most."""
     until = time.monotonic() + seconds
     while (alive := _alive(group)) and time.monotonic() < until:
         time.sleep(0.1)
@@ -169,20 +165,11 @@ def _alive_after(group: int, seconds: float) -> int:
 
 
 def _alive(group: int) -> int:
-    proc = Path("/proc")
-    if not proc.is_dir():
-        try:
-            os.killpg(group, 0)
-        except OSError:
-            return 0
-        return 1
     count = 0
-    for stat in proc.glob("[0-9]*/stat"):
-        try:
-            state, _, of = stat.read_text().rpartition(")")[2].split()[:3]
-        except OSError:
-            continue  # gone meanwhile
-        count += int(of) == group and state != "Z"
+    for process in psutil.process_iter():
+        with suppress(ProcessLookupError, psutil.NoSuchProcess):  # gone meanwhile
+            in_group = os.getpgid(process.pid) == group
+            count += in_group and process.status() != psutil.STATUS_ZOMBIE
     return count
 
 
@@ -198,9 +185,9 @@ class Series:
 def kill_in_turn(copy: Copy, names: tuple[str, ...], kills: int, seed: int) -> Series:
     """Kill so many runs, at random times between start and end, then let one end.
 
-    The copy must have been run before: a run that has to compile does not show how long one takes.
-    A killed run is followed by the next as it left things; one that has come to its end is
-    followed by one with an empty store and other, older reports.
+    The copy must have been run before, so that nothing is left to compile. The next run starts from
+    what a killed one left. After a run that came to its end the store is emptied and older reports
+    are put in place.
     """
     chance = random.Random(seed)
     copy.forget({})
@@ -222,3 +209,11 @@ def kill_in_turn(copy: Copy, names: tuple[str, ...], kills: int, seed: int) -> S
             rows.append((sent, whole_group, found))
     code = copy.run(names)
     return Series(rows, code == 0 and copy.reports() == new, copy.leftovers())
+
+
+def two_at_once(copy: Copy, names: tuple[str, ...]) -> bool:
+    """Whether two runs at once both end well and write what the one before them wrote."""
+    expected = copy.reports()
+    copy.forget({})
+    codes = [run.wait() for run in [copy.start(names), copy.start(names)]]
+    return codes == [0, 0] and copy.reports() == expected and copy.leftovers() == 0

@@ -1,0 +1,178 @@
+"""BCRE as ``bcre_pde`` solves it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+import bcre_pde
+from bcre_studies.models.adapter import (
+    Adapter,
+    Stop,
+    noise_bytes,
+    refuse_endless,
+    thickest_layer,
+)
+from bcre_studies.models.run import Run
+from bcre_studies.scenes.domain import Array
+from bcre_studies.scenes.scene import Scene, SceneError
+
+SHARE = 0.1
+"""BCRE's own error may be this part of the difference that is reported."""
+
+ALONE = 1e-3
+"""Relative error that BCRE is refined to where there is no other model to compare it with."""
+
+COARSEST, FINEST = 100, 1600
+"""Cells of the grids that :meth:`Bcre.answer` goes through, at least."""
+
+MOST_STEPS = 10**8
+"""A run that would take more is refused: it would not end within a working day."""
+
+FRAME_BYTES = 140
+"""Memory a frame and cell: as for every model, with the coarser grids."""
+
+WORK_BYTES = {"runge-kutta": 200, "RK45": 800, "DOP853": 1300, "LSODA": 800, "BDF": 7500}
+"""Memory a cell that the solver works with; LSODA has a full Jacobian besides."""
+
+
+class Bcre(Adapter):
+    """BCRE with the scene's own coefficients, or with those of ``of(scene)``."""
+
+    def __init__(self, of: Callable[[Scene], Scene] | None = None) -> None:
+        self._of = of or (lambda scene: scene)
+
+    def on(self, scene: Scene, cells: int) -> Scene:
+        return scene.with_changes(**{"solver.cells": cells})
+
+    def run(
+        self,
+        scene: Scene,
+        times: Sequence[float],
+        cells: int | None = None,
+        stop: Stop | None = None,
+    ) -> Run:
+        """As :meth:`Adapter.run`, by the method and to the tolerance of ``[solver]``.
+
+        Raises
+        ------
+        bcre_pde.SolveError
+            where the solver gives up.
+        """
+        problem = problem_of(self._of(scene))
+        options = solver_options(scene, stop)
+        return run_of(scene, bcre_pde.solve(problem, times, cells or finest(scene), **options))
+
+    def answer(
+        self, scene: Scene, times: Sequence[float], earlier: Sequence[Run], stop: Stop
+    ) -> Run:
+        """On the scene's grid, or refined until its error in R, over all frames, is small.
+
+        Small is a tenth of the difference from the first earlier run, or a thousandth of R.
+        """
+        x, problem = scene.centres(), problem_of(self._of(scene))
+
+        def measure(solution: bcre_pde.Solution) -> Array:
+            run = run_of(scene, solution)
+            return np.array([run.sample(x, frame=frame) for frame in range(run.t.size)])
+
+        def allowed(R: Array) -> float:
+            relative = ALONE * float(np.mean(np.abs(R)))
+            if not earlier:
+                return relative
+            return SHARE * max(float(np.mean(np.abs(R - earlier[0].R))), relative)
+
+        options = solver_options(scene, stop)
+        try:
+            if scene.solver.cells is None:
+                grids = {"coarsest": _coarsest(scene), "finest": finest(scene)}
+                found = bcre_pde.solve_refined(problem, times, measure, allowed, **grids, **options)
+                return run_of(scene, found.solution, found.error)
+            solutions = [
+                bcre_pde.solve(problem, times, grid, **options)
+                for grid in (scene.solver.cells // part for part in (1, 2, 4))
+                if grid >= bcre_pde.SMALLEST_GRID
+            ]
+        except bcre_pde.SolveError as failure:
+            raise SceneError(
+                f"solver.method = {scene.solver.method!r}: {failure}; must be a method that can "
+                f"solve this scene to solver.tolerance = {scene.solver.tolerance!r}"
+            ) from None
+        error = math.inf
+        if len(solutions) == 3:
+            fine, medium, coarse = map(measure, solutions)
+            error = bcre_pde.grid_convergence_index(fine, medium, coarse).error
+        return run_of(scene, solutions[0], error)
+
+    def require_runnable(self, scene: Scene) -> None:
+        grid = scene.solver.cells or COARSEST
+        bound = bcre_pde.largest_explicit_step(
+            problem_of(scene).material, scene.domain.length / grid, thickest_layer(scene)
+        )
+        refuse_endless(scene, "PDE", scene.time.until / bound, MOST_STEPS)
+
+    def memory(self, scene: Scene, frames: int) -> int:
+        cells, method = finest(scene), scene.solver.method
+        jacobian = 8 * (3 * cells) ** 2 if method == "LSODA" else 0
+        return jacobian + cells * (frames * FRAME_BYTES + noise_bytes(scene) + WORK_BYTES[method])
+
+
+def problem_of(scene: Scene) -> bcre_pde.Problem:
+    """The scene as an initial value problem of BCRE."""
+    material = scene.material
+    return bcre_pde.Problem(
+        initial=scene.initial,
+        material=bcre_pde.Material(
+            v=material.v,
+            D=material.D,
+            gamma=material.gamma,
+            Sc=material.Sc,
+            kappa=material.kappa,
+            v_up=math.inf if material.v_up is None else material.v_up,
+        ),
+        length=scene.domain.length,
+        ends=scene.domain.ends,
+    )
+
+
+def solver_options(scene: Scene, stop: Stop | None = None) -> dict[str, Any]:
+    """Method and tolerance of ``[solver]`` as :func:`bcre_pde.solve` takes them."""
+    options: dict[str, Any] = {
+        "method": scene.solver.method,
+        "tolerance": scene.solver.tolerance,
+    }
+    if stop is not None:
+        options["stop"] = lambda solution: stop(run_of(scene, solution))
+    return options
+
+
+def run_of(scene: Scene, solution: bcre_pde.Solution, error: float | None = None) -> Run:
+    """A solution as the record of the scene; ``error`` is that of R, in the mean absolute value."""
+    facts: dict[str, Any] = {}
+    if error is not None:
+        relative = error / (float(np.mean(np.abs(solution.R))) or 1.0)
+        facts["error_estimate"] = relative if math.isfinite(relative) else None
+    return Run(
+        scene=scene,
+        x=solution.x,
+        t=solution.t,
+        h=solution.h,
+        R=solution.R,
+        outflow=solution.outflow,
+        steps=solution.steps,
+        evaluations=solution.evaluations,
+        wall_s=solution.wall_s,
+        facts=facts,
+    )
+
+
+def _coarsest(scene: Scene) -> int:
+    return max(scene.domain.cells, COARSEST)
+
+
+def finest(scene: Scene) -> int:
+    """Cells of the scene's own PDE grid, or of the finest that it may be refined to."""
+    return scene.solver.cells or max(FINEST, 4 * _coarsest(scene))

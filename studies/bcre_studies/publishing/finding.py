@@ -1,0 +1,39 @@
+"""A study with what it measured and what follows from it."""
+
+from __future__ import annotations
+
+import inspect
+from dataclasses import dataclass
+
+from bcre_studies.catalog import STUDIES, study
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.publishing.store import Tables, tables_of
+from bcre_studies.reporting.pages import markdown, readable
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A study with what it measured and concluded."""
+
+    name: str
+    title: str
+    text: str
+    tables: Tables
+    claims: list[Claim]
+
+    @property
+    def comparison(self) -> str:
+        """The comparison as a Markdown table."""
+        return markdown(self.tables["comparison"])
+
+    @property
+    def comparison_html(self) -> str:
+        """The comparison as an HTML table, its texts escaped."""
+        return str(readable(self.tables["comparison"]).to_html(index=False, border=0))
+
+
+def find(name: str) -> Finding:
+    """Run a study, or take its stored tables, and judge it."""
+    module, tables = study(name), tables_of(name)
+    text = inspect.cleandoc(module.__doc__ or "")
+    return Finding(name, STUDIES[name].title, text, tables, module.judge(tables))
