@@ -14,7 +14,7 @@ import numpy as np
 from numba import types
 from numba.extending import overload, register_jitable
 
-from bcre_ca.exchange import exchanging, deposit_thin
+from bcre_ca.exchange import deposit_thin, exchanging
 from bcre_ca.plane.coefficients import Coefficients
 
 
