@@ -149,7 +149,7 @@ def test_failure_of_another_model_names_its_cell():
 
 
 LIGHT = """
-import bcre_pde, bcre_pde.exact, bcre_pde.explicit, bcre_pde.fixed_step, bcre_pde.theory
+import sys, bcre_pde, bcre_pde.exact, bcre_pde.explicit, bcre_pde.fixed_step, bcre_pde.theory
 bcre_pde.Problem(lambda x: (x, x), bcre_pde.Material(0.1, 0.1, 0.01, 0.5), 100.0)
 bcre_pde.theory.stable(0.1, 0.1, 0.1, "runge-kutta")
 print(*{"pde", "numba", "pandas", "matplotlib"} & set(sys.modules))

@@ -72,7 +72,6 @@ def fake(places, monkeypatch):
     module = Fake()
     studies = {"fake": catalog.Entry("fake", TITLE)}
     monkeypatch.setitem(sys.modules, "bcre_studies.fake", module)
-    studies = {"fake": catalog.Entry("fake", Fake.TITLE)}
     for place in (catalog, finding, store, write):
         monkeypatch.setattr(place, "STUDIES", studies)
     monkeypatch.setattr(write, "PAPER_CLAIMS", ())

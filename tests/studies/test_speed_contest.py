@@ -112,6 +112,7 @@ def test_contender_ends_in_finite_layers_that_have_moved_towards_the_truth(conte
 
 # py-pde compiles for a minute or so; the same Python, run as it stands, shows the same numbers.
 UNCOMPILED = """
+from bcre_studies.performance.record import contest
 
 scene = contest.scenes()[contest.WAVE]
 for contender in contest.rivals():

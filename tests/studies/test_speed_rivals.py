@@ -40,6 +40,9 @@ def automaton(problem, until, cells, dt):
 
 # py-pde compiles for a minute or so; the same Python, run as it stands, shows the same numbers.
 UNCOMPILED = """
+import sys
+import numpy as np
+from bcre_pde import Material, Problem
 from bcre_studies.performance.rivals import pypde_expressions as expressions
 
 ends, kappa, until, cells, dt, tolerance, folder = sys.argv[1:]

@@ -13,7 +13,7 @@ from bcre_studies.scenes.scene import Scene, SceneError
 
 Stop = Callable[[Run], bool]
 
-FRAME_BYTES = 80
+FRAME_BYTES = 35
 """Memory a frame and cell: both layers while they are gathered, and the text they become."""
 
 NOISE_BYTES = 800

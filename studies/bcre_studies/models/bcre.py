@@ -32,7 +32,7 @@ COARSEST, FINEST = 100, 1600
 MOST_STEPS = 10**8
 """A run that would take more is refused: it would not end within a working day."""
 
-FRAME_BYTES = 140
+FRAME_BYTES = 70
 """Memory a frame and cell: as for every model, with the coarser grids."""
 
 WORK_BYTES = {"runge-kutta": 200, "RK45": 800, "DOP853": 1300, "LSODA": 800, "BDF": 7500}
