@@ -1,7 +1,4 @@
-"""Scene files spoilt in every way that comes to mind, by a seeded hand.
-
-Each class of mutation takes the text of a good scene and of its table and returns spoilt ones.
-"""
+"""Scene files and tables spoilt at random, in one of twelve ways, from a fixed seed."""
 
 from __future__ import annotations
 
@@ -73,7 +70,7 @@ VALUES = {
         *("5e-324", "1e400", "9" * 400, "0x" + "f" * 6000, "1" * 5000, "1000000", "100000"),
     ),
 }
-"""What is put in place of one to three values of the scene."""
+"""Replacements for one to three values of the scene."""
 
 FILES = (
     *("nowhere.csv", ".", "..", "/", "/dev/null", "", "start.csv/", "start.csv/x", "x" * 300),

@@ -23,7 +23,8 @@ def measure(case):
 
 
 def judge(tables):
-    from bcre_studies.comparison.claim import Claim, Verdict
+    from bcre_studies.comparison.claim import Claim
+    from bcre_studies.comparison.verdict import Verdict
 
     count = f"{len(tables['comparison'])} cases"
     return [Claim("counted", "Every case is there.", Verdict.AGREE, count, "none")]

@@ -7,8 +7,7 @@ import pytest
 import bcre_ca
 import bcre_pde
 from bcre_studies.comparison.verdict import Verdict
-from bcre_studies.verification.hard_cases import adaptive_step, scarp_grids
-from bcre_studies.verification.hard_cases import study as study
+from bcre_studies.verification.hard_cases import adaptive_step, scarp_grids, study
 from bcre_studies.verification.hard_cases.study import FAILS, REFUSED, SURVIVES, Attempt
 
 SCENES = study.scenes()
@@ -149,3 +148,20 @@ def test_claims_fail_by_what_they_claim():
     assert failing(smallest=-0.1) == ["R >= 0"]
     assert failing(mass=1e-11) == ["mass"]
     assert failing(smallest=float("nan")) == ["finite"]
+
+
+def test_panels_of_the_scarp_name_what_they_show():
+    from matplotlib.figure import Figure
+
+    table = pd.DataFrame(
+        [
+            {"model": model, "kappa": kappa, "cells": cells, "max_R": 1.0, "place": 2.0}
+            for model, kappa in scarp_grids.SERIES
+            for cells in (100, 200)
+        ]
+    )
+    axis = Figure().subplots()
+    scarp_grids.draw(axis, table, "max_R", "max R")
+    assert axis.get_ylabel() == "max R"
+    names = {line.get_label() for line in axis.get_lines()}
+    assert names == {name for _, name in scarp_grids.SERIES.values()}

@@ -7,7 +7,7 @@ import pytest
 
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON, BCRE
-from bcre_studies.observables import fronts as observe
+from bcre_studies.observables import fronts
 from bcre_studies.scenes.scene import load
 from bcre_studies.validation import roughness_decay
 
@@ -23,7 +23,7 @@ def surface_scene(d, dt):
 
 def surface_rate(run, waves):
     k = 2 * math.pi * waves / 100
-    return observe.mode_rate(run.x, run.u[0], run.u[-1], SPAN, k)
+    return fronts.mode_rate(run.x, run.u[0], run.u[-1], SPAN, k)
 
 
 def rate_of_smoothing(waves, d, dt):

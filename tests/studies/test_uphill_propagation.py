@@ -11,7 +11,7 @@ import bcre_pde
 import bcre_pde.theory
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE
-from bcre_studies.observables import fronts as observe
+from bcre_studies.observables import fronts
 from bcre_studies.scenes.scene import load
 from bcre_studies.validation import uphill_propagation
 
@@ -28,7 +28,7 @@ def release_scene(excess, d):
 
 
 def front_speed(run):
-    return observe.front_speed(run, 1e-150 * 2.5 / (2 * math.sqrt(D * TIMES[0])))
+    return fronts.front_speed(run, 1e-150 * 2.5 / (2 * math.sqrt(D * TIMES[0])))
 
 
 @pytest.mark.parametrize("d", [1.0, 0.4])
@@ -71,8 +71,8 @@ def test_the_automatons_scarp_is_as_fast_as_that_of_bcre_with_its_own_coefficien
     )
     times = np.arange(0.0, 271.0, 2.0)
     own = EFFECTIVE.run(scene, times, 140)
-    speed, law = observe.scarp_speed(own, 45.0), bcre_pde.theory.scarp_speed(0.12, 0.01, 45.0)
-    assert observe.scarp_speed(AUTOMATON.run(scene, times), 45.0) == pytest.approx(speed, rel=0.03)
+    speed, law = fronts.scarp_speed(own, 45.0), bcre_pde.theory.scarp_speed(0.12, 0.01, 45.0)
+    assert fronts.scarp_speed(AUTOMATON.run(scene, times), 45.0) == pytest.approx(speed, rel=0.03)
     assert 0.6 * law < speed < 0.9 * law
 
 

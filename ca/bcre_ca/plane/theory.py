@@ -121,11 +121,6 @@ def silo_layer(v: float, rise: float, radius: float, r: float) -> float:
     return rise * (radius**2 - r**2) / (2 * v * r)
 
 
-def silo_slope_excess(gamma: float, rise: float, R: float) -> float:
-    """S - Sc = -w/(gamma R): the surface rises evenly, dh/dt = -E = w."""
-    return -rise / (gamma * R)
-
-
 def rill_growth(
     v: float, D: float, gamma: float, S: float, Sc: float, R0: float, d: float, k: float
 ) -> float:

@@ -138,7 +138,6 @@ def compare_each(
     measure: MeasureEach,
     scales: Scales,
     tolerance: float,
-    own: Scene | None = None,
     **refinement: Any,
 ) -> list[Comparison]:
     """Compare several numbers or profiles, measured on the same runs, each by itself.
@@ -148,13 +147,11 @@ def compare_each(
     scene, times, tolerance, refinement: as for :func:`compare`.
     measure: the quantities of a run.
     scales: what the difference of each is relative to, see :class:`Comparison`.
-    own: the scene with the automaton's own coefficients, where they are not those of
-        :func:`bcre_studies.models.effective.effective`.
     """
     automaton = measure(AUTOMATON.run(scene, times))
     in_both = [
         refine_each(solved, times, measure, automaton, scales, tolerance, **refinement)
-        for solved in (scene, own or effective(scene))
+        for solved in (scene, effective(scene))
     ]
     return [
         Comparison(value, nominal, with_own, tolerance, scale)

@@ -9,9 +9,7 @@ from numpy.typing import ArrayLike
 from bcre_pde import Measured
 from bcre_studies.comparison.difference import difference, size
 from bcre_studies.comparison.rounding import finest_of
-
-SHARE = 0.1
-"""The PDE's error may be this part of the difference that is reported."""
+from bcre_studies.models.bcre import SHARE
 
 
 def allowed_error(

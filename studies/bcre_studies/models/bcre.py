@@ -85,27 +85,23 @@ class Bcre(Adapter):
                 return relative
             return SHARE * max(float(np.mean(np.abs(R - earlier[0].R))), relative)
 
+        def measure_on(cells: int) -> tuple[bcre_pde.Solution, list[Array]]:
+            solution = bcre_pde.solve(problem, times, cells, **options)
+            return solution, [measure(solution)]
+
         options = solver_options(scene, stop)
         try:
             if scene.solver.cells is None:
                 grids = {"coarsest": _coarsest(scene), "finest": finest(scene)}
                 found = bcre_pde.solve_refined(problem, times, measure, allowed, **grids, **options)
-                return run_of(scene, found.solution, found.error)
-            solutions = [
-                bcre_pde.solve(problem, times, grid, **options)
-                for grid in (scene.solver.cells // part for part in (1, 2, 4))
-                if grid >= bcre_pde.SMALLEST_GRID
-            ]
+            else:
+                (found,) = bcre_pde.measure_refined(measure_on, _given_grids(scene.solver.cells))
         except bcre_pde.SolveError as failure:
             raise SceneError(
                 f"solver.method = {scene.solver.method!r}: {failure}; must be a method that can "
                 f"solve this scene to solver.tolerance = {scene.solver.tolerance!r}"
             ) from None
-        error = math.inf
-        if len(solutions) == 3:
-            fine, medium, coarse = map(measure, solutions)
-            error = bcre_pde.grid_convergence_index(fine, medium, coarse).error
-        return run_of(scene, solutions[0], error)
+        return run_of(scene, found.solution, found.error)
 
     def require_runnable(self, scene: Scene) -> None:
         grid = scene.solver.cells or COARSEST
@@ -167,6 +163,11 @@ def run_of(scene: Scene, solution: bcre_pde.Solution, error: float | None = None
         wall_s=solution.wall_s,
         facts=facts,
     )
+
+
+def _given_grids(cells: int) -> list[int]:
+    """The scene's own PDE grid, and for its error two that are two and four times coarser."""
+    return [grid for grid in (cells // 4, cells // 2, cells) if grid >= bcre_pde.SMALLEST_GRID]
 
 
 def _coarsest(scene: Scene) -> int:

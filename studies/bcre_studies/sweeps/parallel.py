@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import threading
 import time
+import warnings
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import closing, contextmanager
 from contextvars import ContextVar
@@ -24,6 +25,9 @@ from bcre_studies.system import pickles
 
 Case = TypeVar("Case")
 Result = TypeVar("Result")
+
+# With psutil there, loky replaces a worker that has grown by 300 MB, as compiled functions let it.
+warnings.filterwarnings("ignore", "A worker stopped while some jobs", UserWarning)
 
 _folder: ContextVar[Path | None] = ContextVar("folder of finished cases", default=None)
 

@@ -33,7 +33,7 @@ from bcre_studies.comparison.verdict import Verdict, worst
 from bcre_studies.models.automaton import rule_of
 from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED, EFFECTIVE, MODELS, Model
 from bcre_studies.models.run import Run
-from bcre_studies.observables import fronts as observe
+from bcre_studies.observables import fronts
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, load
@@ -135,7 +135,7 @@ def _modes(case: tuple[str, float]) -> list[Row]:
         return [
             part
             for k in waves
-            for part in split(observe.mode_rate(run.x, before, after, SPAN, k), k)
+            for part in split(fronts.mode_rate(run.x, before, after, SPAN, k), k)
         ]
 
     rates = [mode_rates(field, d, k) for k in waves]
@@ -170,7 +170,7 @@ def _rough_slope() -> tuple[list[Row], pd.DataFrame]:
         return float(HEIGHT * np.sqrt(np.mean(np.exp(2 * t * np.array(decays)))))
 
     def measured(run: Run) -> list[float]:
-        return [observe.roughness(u) for u in run.u[1:]]
+        return [fronts.roughness(u) for u in run.u[1:]]
 
     results = compare_each(
         scene, [0.0, *SHOWN], measured, [HEIGHT] * len(SHOWN), TOLERANCE, finest=800
@@ -193,7 +193,7 @@ def _rough_slope() -> tuple[list[Row], pd.DataFrame]:
         {
             "model": model.name,
             "t": t,
-            "RMS": significant(observe.roughness(u), 4),
+            "RMS": significant(fronts.roughness(u), 4),
             "closed form": significant(linear(model, t), 4),
         }
         for model, run in runs.items()

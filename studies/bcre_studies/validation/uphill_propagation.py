@@ -38,7 +38,7 @@ from bcre_studies.comparison.verdict import Verdict, worst
 from bcre_studies.models.automaton import rule_of
 from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED
 from bcre_studies.models.run import Run
-from bcre_studies.observables import fronts as observe
+from bcre_studies.observables import fronts
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Domain
 from bcre_studies.scenes.scene import Scene, Time, load
@@ -111,7 +111,7 @@ def front(d: float, excess: float) -> list[Row]:
     (result,) = compare_each(
         scene,
         times,
-        lambda run: [observe.front_speed(run, release)],
+        lambda run: [fronts.front_speed(run, release)],
         [v + theory],
         TOLERANCE,
         coarsest=80,
@@ -141,7 +141,7 @@ def wave(d: float, R0: float) -> list[Row]:
     rule = rule_of(scene)
 
     def speed(run: Run) -> list[float]:
-        return [observe.mode_rate(run.x, run.u[0], run.u[1], span, k).imag / k]
+        return [fronts.mode_rate(run.x, run.u[0], run.u[1], span, k).imag / k]
 
     (result,) = compare_each(
         scene,
@@ -169,7 +169,7 @@ def scarp(d: float) -> list[Row]:
     results = compare_each(
         scene,
         times,
-        lambda run: [observe.scarp_speed(run, H) for H in HEIGHTS],
+        lambda run: [fronts.scarp_speed(run, H) for H in HEIGHTS],
         laws,
         TOLERANCE,
         coarsest=80,
@@ -188,7 +188,7 @@ def reach(d: float) -> list[Row]:
     def reaches(run: Run) -> list[float]:
         change = np.abs(run.u[1] - run.u[0])
         start, *ends = (
-            observe.exponential_edge(run.x, values, EDGE * values.max())
+            fronts.exponential_edge(run.x, values, EDGE * values.max())
             for values in (run.R[0], run.R[1], change)
         )
         return [start - end for end in ends]
@@ -220,7 +220,7 @@ def closed_reaches(scene: Scene, D: float, dt: float = 0.0) -> tuple[float, floa
     R = np.exp(sigma * t - (x - material.v * t) ** 2 / square) / np.sqrt(square)
     change = np.trapezoid(R, t, axis=0) + dt / 2 * (R[0] - R[-1])
     start, end, changed = (
-        observe.edge(x, values, EDGE * values.max()) for values in (R[0], R[-1], change)
+        fronts.edge(x, values, EDGE * values.max()) for values in (R[0], R[-1], change)
     )
     return start - end, start - changed
 

@@ -8,15 +8,16 @@ without fused or reassociated arithmetic.
 
 from __future__ import annotations
 
-import hashlib
 import math
-from pathlib import Path
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from bcre_ca.coefficients import Coefficients, every_term
+from bcre_ca.kept import kept
 from bcre_ca.line.drops import drops, period_drop
 from bcre_ca.line.kernels import driver
 from bcre_ca.rule import Ends, Rule
@@ -26,15 +27,10 @@ Array = NDArray[np.float64]
 BLOCK = driver.BLOCK
 
 
-def _digest() -> str:
-    """Of all sources of the automaton."""
-    digest = hashlib.sha256()
-    for path in sorted(Path(__file__).parents[2].rglob("*.py")):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()
-
-
-_compiled = driver.entries(_digest())
+_march = kept(driver.march)
+_march_frozen = kept(driver.march_frozen)
+_follow = kept(driver.follow)
+_bound = kept(driver.bound)
 
 
 class Followed(NamedTuple):
@@ -55,19 +51,26 @@ def march(
 
     h and R have the shape (N,). The exchange sees the slope of ``frozen`` where that is given.
     """
-    K, account, fall = _as_type(rule.coefficients(), h.dtype), np.zeros(2), _fall(rule, h, ends)
     if frozen is None:
-        _compiled.march(h, R, K, steps, account, fall)
-    else:
-        _, below = drops(frozen, K.repose_drop, fall)
-        _compiled.march_frozen(h, R, below, K, steps, account, fall)
+        return _march_piles(h[None], R[None], rule, steps, ends)
+    K, account, fall = _as_type(rule.coefficients(), h.dtype), np.zeros(2), _fall(rule, h, ends)
+    _, below = drops(frozen, K.repose_drop, fall)
+    _march_frozen(h, R, below, K, steps, account, fall)
     return float(account[0])
 
 
 def march_many(h: Array, R: Array, rule: Rule, steps: int, ends: Ends) -> float:
     """:func:`march` for many piles, shape (piles, N), shared out among the processors."""
-    K, accounts = _as_type(rule.coefficients(), h.dtype), np.zeros((h.shape[0], 2))
-    _compiled.march_many(h, R, K, steps, accounts, _fall(rule, h, ends))
+    threads = min(numba.get_num_threads(), len(h))
+    shares = [slice(len(h) * i // threads, len(h) * (i + 1) // threads) for i in range(threads)]
+    with ThreadPoolExecutor(threads) as pool:
+        found = pool.map(lambda of: _march_piles(h[of], R[of], rule, steps, ends), shares)
+    return math.fsum(found)
+
+
+def _march_piles(h: Array, R: Array, rule: Rule, steps: int, ends: Ends) -> float:
+    K, accounts = _as_type(rule.coefficients(), h.dtype), np.zeros((len(h), 2))
+    _march(h, R, K, steps, accounts, _fall(rule, h, ends))
     return math.fsum(accounts[:, 0])
 
 
@@ -80,13 +83,13 @@ def follow(
     """
     account, counts = np.zeros(2), np.zeros(4, np.int64)
     p, calibrating, fall = rule.parameters(), rule.calibrating_step(), _fall(rule, h, ends)
-    left = _compiled.follow(h, R, p, span, blocks, margin, calibrating, account, fall, counts)
+    left = _follow(h, R, p, span, blocks, margin, calibrating, account, fall, counts)
     return Followed(float(left), float(account[0]), *(int(count) for count in counts))
 
 
 def stable_step(h: Array, R: Array, rule: Rule, ends: Ends) -> float:
     """The largest stable step for these layers; NaN where they are not finite."""
-    return float(_compiled.bound(h, R, every_term(rule.parameters()), _fall(rule, h, ends)))
+    return float(_bound(h, R, every_term(rule.parameters()), _fall(rule, h, ends)))
 
 
 def stepped_cells(R: Array) -> int:

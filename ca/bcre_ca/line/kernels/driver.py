@@ -4,12 +4,13 @@ Nothing moves outside the window from the first to the last wet cell, and in the
 the window grows by one cell a step at either end. A block of steps therefore runs on the window
 widened by as many cells, and the window is found anew after it. The window must not cross joined
 ends: where it would, and in the in-place readings, the whole pile is stepped.
+
+``march``, ``march_frozen``, ``follow`` and ``bound`` are compiled by :func:`bcre_ca.kept.kept`.
 """
 
 from __future__ import annotations
 
 import math
-from types import SimpleNamespace
 
 import numba
 import numpy as np
@@ -196,8 +197,7 @@ def _copy(h, R, account, to_h, to_R, to_account):  # type: ignore[no-untyped-def
     to_account[1] = account[1]
 
 
-@numba.njit(error_model="numpy")
-def followed(  # type: ignore[no-untyped-def]
+def follow(  # type: ignore[no-untyped-def]
     h, R, p, span, blocks, margin, calibrating, account, period_drop, counts
 ):
     """At most ``blocks`` blocks of steps whose dt is ``margin`` of the largest stable one.
@@ -240,47 +240,17 @@ def followed(  # type: ignore[no-untyped-def]
     return max(span, 0.0)
 
 
-@numba.njit(error_model="numpy")
-def _one_of(h, R, K, steps, accounts, period_drop, pile):  # type: ignore[no-untyped-def]
-    """A function of its own: the loop below would not be compiled correctly around its body."""
-    fixed(h[pile], R[pile], K, steps, accounts[pile], period_drop)
+def march(h, R, K, steps, accounts, period_drop):  # type: ignore[no-untyped-def]
+    """``steps`` steps of many piles, shape (piles, N), one after the other."""
+    for pile in range(h.shape[0]):
+        fixed(h[pile], R[pile], K, steps, accounts[pile], period_drop)
 
 
-def entries(sources: str):  # type: ignore[no-untyped-def]
-    """The compiled functions that Python calls, by name.
+def march_frozen(h, R, drop, K, steps, account, period_drop):  # type: ignore[no-untyped-def]
+    """``steps`` steps on a frozen slope."""
+    frozen.march(h, R, drop, K, steps, account, period_drop)
 
-    Their machine code is kept on disk. Its key holds the values that a function closes over, but
-    not the files of the functions that it calls: hence ``sources``, a digest of those.
-    """
 
-    @numba.njit(cache=True, error_model="numpy")
-    def march(h, R, K, steps, account, period_drop):  # type: ignore[no-untyped-def]
-        sources  # noqa: B018
-        fixed(h, R, K, steps, account, period_drop)
-
-    @numba.njit(cache=True, parallel=True, error_model="numpy")
-    def march_many(h, R, K, steps, accounts, period_drop):  # type: ignore[no-untyped-def]
-        sources  # noqa: B018
-        for pile in numba.prange(h.shape[0]):
-            _one_of(h, R, K, steps, accounts, period_drop, pile)
-
-    @numba.njit(cache=True, error_model="numpy")
-    def march_frozen(h, R, drop, K, steps, account, period_drop):  # type: ignore[no-untyped-def]
-        sources  # noqa: B018
-        frozen.march(h, R, drop, K, steps, account, period_drop)
-
-    @numba.njit(cache=True, error_model="numpy")
-    def follow(  # type: ignore[no-untyped-def]
-        h, R, p, span, blocks, margin, calibrating, account, period_drop, counts
-    ):
-        sources  # noqa: B018
-        return followed(h, R, p, span, blocks, margin, calibrating, account, period_drop, counts)
-
-    @numba.njit(cache=True, error_model="numpy")
-    def bound(h, R, p, period_drop):  # type: ignore[no-untyped-def]
-        sources  # noqa: B018
-        return stable_step(h, R, p, period_drop, True)
-
-    return SimpleNamespace(
-        march=march, march_many=march_many, march_frozen=march_frozen, follow=follow, bound=bound
-    )
+def bound(h, R, p, period_drop):  # type: ignore[no-untyped-def]
+    """The largest stable step of a whole pile."""
+    return stable_step(h, R, p, period_drop, True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numba
 
 from bcre_ca.exchange import carried, deposit_thin, eroded
-from bcre_ca.line.kernels.sweep import add
+from bcre_ca.sums import add
 
 
 @numba.njit(error_model="numpy")

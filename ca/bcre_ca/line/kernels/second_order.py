@@ -8,8 +8,8 @@ from __future__ import annotations
 import numba
 import numpy as np
 
-from bcre_ca.line.kernels.sweep import add
 from bcre_ca.line.second_order import corrected, face_flux, predicted
+from bcre_ca.sums import add
 
 
 @numba.njit(error_model="numpy")

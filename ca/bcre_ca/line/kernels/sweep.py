@@ -18,21 +18,13 @@ import numba
 import numpy as np
 
 from bcre_ca.exchange import carried, deposit_thin, eroded, eroded_at_foot
+from bcre_ca.sums import add
 
 TILE_FROM = 250_000
 """Cells from which on tiles pay: h and R of this length fill a cache of 4 MB."""
 
 TILE = 4096
 TILE_STEPS = 32
-
-
-@numba.njit(error_model="numpy")
-def add(account, term):  # type: ignore[no-untyped-def]
-    """Compensated sum, so that the balance of mass holds to rounding after any number of steps."""
-    corrected = term - account[1]
-    total = account[0] + corrected
-    account[1] = (total - account[0]) - corrected
-    account[0] = total
 
 
 @numba.njit(error_model="numpy")

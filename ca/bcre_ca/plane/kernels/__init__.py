@@ -7,8 +7,8 @@ lies beyond the ends; ``bounds`` looks for what limits the step; ``storage`` hol
 
 from __future__ import annotations
 
+from bcre_ca.kept import kept
 from bcre_ca.plane.kernels import bounds, facets, march, split4, tilted
-from bcre_ca.plane.kernels.kept import SOURCES, digest_of, kept
 from bcre_ca.plane.kernels.work import Form
 
 _FACETS = Form(facets.REACH, facets.CARRIED, together=2)
@@ -21,9 +21,7 @@ FORMS = {
 }
 
 
-_SOURCES = digest_of(SOURCES)
-
-take_steps = kept(march.take_steps, _SOURCES)
-extremes = kept(bounds.extremes, _SOURCES)
+take_steps = kept(march.take_steps)
+extremes = kept(bounds.extremes)
 
 __all__ = ["FORMS", "extremes", "take_steps"]

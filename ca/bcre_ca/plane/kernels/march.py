@@ -23,20 +23,12 @@ from bcre_ca.plane.kernels.views import borrowed, copy, fill
 from bcre_ca.plane.kernels.windows import cut, look, widen
 from bcre_ca.plane.kernels.work import Work
 from bcre_ca.plane.sources import Cells
+from bcre_ca.sums import add
 
 _begin = by_flow({Tilted: tilted.begin, Split4: split4.begin, Facets: facets.begin})
 _take = by_flow({Tilted: tilted.take, Split4: split4.take, Facets: facets.take})
 
 WHOLE, BEGIN, SLAB, WEDGE, END = range(5)
-
-
-@numba.njit(error_model="numpy")
-def add(sums, term):  # type: ignore[no-untyped-def]
-    """Compensated sum, so that the balance of mass holds to rounding after any number of steps."""
-    corrected = term - sums[1]
-    total = sums[0] + corrected
-    sums[1] = (total - sums[0]) - corrected
-    sums[0] = total
 
 
 @numba.njit(error_model="numpy")
@@ -171,7 +163,7 @@ def take_steps(part, s, f, K, cells, heights, w):  # type: ignore[no-untyped-def
 
     BEGIN returns the number of slabs, of which SLAB takes one; then WEDGE makes up for what is left
     out at the cut below slab s, and END looks where it is wet now. Compiled by
-    :func:`bcre_ca.plane.kernels.kept.kept`.
+    :func:`bcre_ca.kept.kept`.
     """
     f, cells, w = _borrowed_field(f), _borrowed_cells(cells), _borrowed_work(w)
     if part == WHOLE:

@@ -113,9 +113,9 @@ def claim(table: pd.DataFrame) -> Claim:
 
 def draw(axis: Axes, table: pd.DataFrame, key: str, label: str) -> None:
     """One measured quantity against cells."""
-    for (model, kappa), (look, label) in SERIES.items():
+    for (model, kappa), (look, name) in SERIES.items():
         rows = _of(table, model, kappa)
-        axis.semilogx(rows["cells"], rows[key], **look.marked_line | {"label": label})
+        axis.semilogx(rows["cells"], rows[key], **look.marked_line | {"label": name})
     cells = sorted(set(table["cells"]))
     axis.set_xticks(cells, [str(count) for count in cells])
     axis.minorticks_off()
