@@ -75,9 +75,9 @@ def test_advance_counts_steps_time_and_outflow(figure_1):
 @pytest.mark.parametrize(
     ("h", "R", "message"),
     [
-        ([1.0, 2.0], [1.0], r"shape \(2,\), R \(1,\)"),
-        ([], [], r"shape \(0,\)"),
-        ([[[1.0, 2.0]]], [[[1.0, 2.0]]], r"shape \(1, 1, 2\)"),
+        ([1.0, 2.0], [1.0], r"shape \((1, )?2,?\), R \((1, )?1,?\): must be equal"),
+        ([], [], r"shape \((1, )?0,?\)"),
+        ([[[1.0, 2.0]]], [[[1.0, 2.0]]], r"shape \((1, )?1, 1, 2\)"),
         ([1.0, math.nan], [1.0, 1.0], "finite"),
         ([1.0, 2.0], [1.0, math.inf], "finite"),
         ([0.0, 0.0], [0.0, -0.5], r"R = -0.5: must be >= 0"),
@@ -86,8 +86,8 @@ def test_advance_counts_steps_time_and_outflow(figure_1):
 def test_layers_that_make_no_pile_are_refused(h, R, message):
     with pytest.raises(ValueError, match=message):
         evolve(h, R, FIGURE_1, 1)
-    with pytest.raises(ValueError, match=message.replace("(2,", "(1, 2").replace("(0,", "(1, 0")):
-        evolve_many([h], [R[:2]], FIGURE_1, 1) if np.ndim(h) < 3 else evolve_many(h, R, FIGURE_1, 1)
+    with pytest.raises(ValueError, match=message):
+        evolve_many([h], [R], FIGURE_1, 1)
 
 
 def test_a_plane_is_not_taken_for_a_batch_of_lines_nor_a_line_for_one():
