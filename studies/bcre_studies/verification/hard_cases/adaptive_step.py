@@ -11,7 +11,7 @@ from typing import Any
 import pandas as pd
 
 import bcre_ca
-from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.claim import Claim, quality_check
 from bcre_studies.comparison.difference import relative_difference
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict
@@ -78,7 +78,7 @@ def claim(table: pd.DataFrame) -> Claim:
         for row in table.itertuples()
     )
     agrees = (table["verdict"] == str(Verdict.AGREE)).all()
-    return Claim(
+    return quality_check(
         name="steps that adapt",
         statement="A step that follows its bounds gives the R of a fixed step within the errors of "
         "the two.",
