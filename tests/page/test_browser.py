@@ -7,7 +7,7 @@ import pytest
 
 import bcre_ca
 import bcre_ca.theory
-from bcre_ca.step import step
+from bcre_ca.line.step import step
 from bcre_studies.reporting.page.render import script, style_sheet
 from bcre_studies.system.files import ROOT
 

@@ -1,7 +1,7 @@
-// The paper's rule, as bcre_ca.step writes it: the same operations in the same order.
+// The paper's rule, as bcre_ca.line.step writes it: the same operations in the same order.
 // A pile is {h, R}: Float64Arrays of the static and the rolling layer; p holds v, D, gamma, Sc, d.
 
-const MARGIN = 0.8; // part of the largest stable step that is taken, as in bcre_ca.evolve
+const MARGIN = 0.8; // part of the largest stable step that is taken, as in bcre_ca.line.evolve
 
 function fold(p, dt) {
   const c = p.v * dt / p.d, b = p.D * dt / (p.d * p.d);
