@@ -1,6 +1,7 @@
 """A point's row holds what the models say of its scene, and how sure that is."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -62,11 +63,11 @@ def test_every_column_that_is_announced_is_filled_and_no_other(measure):
     ("changed", "told"),
     [
         ({"time.step": 5.0}, "dt = 5 cannot be stable"),
-        ({"domain.cells": 10**7, "until": 1e9}, "would take"),
+        ({"until": 1e10}, "would take 5e+10 steps of the automaton"),
         ({"rolling.0.width": -1.0}, "rolling.0.width = -1.0"),
     ],
 )
 def test_a_scene_that_cannot_be_run_says_why(measure, changed, told):
     of_all = measure(SPEC.replace('"pde effective", "ca", "pde"', '"ca"'))
-    with pytest.raises(ValueError, match=told):
+    with pytest.raises(ValueError, match=re.escape(told)):
         of_all(changed)
