@@ -58,7 +58,7 @@ def _agrees(claim: Claim) -> bool:
 
 
 def _holds(claim: Claim) -> bool:
-    return claim.verdict in (Verdict.AGREE, Verdict.AGREE_EFFECTIVE)
+    return claim.verdict in (Verdict.AGREE, Verdict.EXPLAINED)
 
 
 PAPER_CLAIMS = (

@@ -89,7 +89,7 @@ def test_verdict_of_a_comparison_follows_from_its_differences():
     close, far = refined(1.0, 1e-4, 1e-2), refined(2.0, 1e-4, 1e-2)
     loose = refined(2.0, 1.0, 1e-2)
     assert Comparison(1.01, close, far, 0.05).verdict is Verdict.AGREE
-    assert Comparison(1.01, far, close, 0.05).verdict is Verdict.AGREE_EFFECTIVE
+    assert Comparison(1.01, far, close, 0.05).verdict is Verdict.EXPLAINED
     assert Comparison(1.01, far, far, 0.05).verdict is Verdict.DISAGREE
     assert Comparison(1.01, loose, close, 0.05).verdict is Verdict.UNRESOLVED
 
@@ -115,7 +115,7 @@ def test_figures_2_and_3_differ_by_the_automatons_own_diffusion(name, nominal, e
     )
     assert found.difference == pytest.approx(nominal, rel=0.1)
     assert found.difference_effective == pytest.approx(effective, rel=0.1)
-    assert found.verdict is Verdict.AGREE_EFFECTIVE
+    assert found.verdict is Verdict.EXPLAINED
     assert found.pde.error <= 0.1 * found.difference * np.mean(np.abs(found.pde.value))
 
 

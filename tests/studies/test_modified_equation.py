@@ -19,7 +19,7 @@ def test_effective_diffusion_explains_more_than_95_percent_of_figure_2():
     assert row["explained"] > 0.95
     assert row["D_eff"] == pytest.approx(row["both"], abs=1e-4)
     assert row["kappa_eff"] == pytest.approx(row["nominal"], rel=0.01)
-    assert row["verdict"] == Verdict.AGREE_EFFECTIVE
+    assert row["verdict"] == Verdict.EXPLAINED
 
 
 @pytest.mark.parametrize(("v", "D", "gamma", "courant"), [(1.7, 0.3, 0.02, 0.3), (3, 0.05, 0, 0.8)])
@@ -93,7 +93,7 @@ def made_up(**changes):
         for split, cells, steps in study.SPLITS:
             row = {"scene": scene, "split": split, "d": 1 / cells, "dt": 0.4 / steps}
             row |= {"nominal": 0.5, "D_eff": 0.01, "kappa_eff": 0.5, "both": 0.01 / steps}
-            row |= {"explained": 0.98, "verdict": str(Verdict.AGREE_EFFECTIVE)}
+            row |= {"explained": 0.98, "verdict": str(Verdict.EXPLAINED)}
             rows.append(row | (changes if scene == changes.get("scene", "figure2") else {}))
     return {"comparison": pd.DataFrame(rows)}
 

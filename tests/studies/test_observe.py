@@ -103,7 +103,7 @@ def comparison(automaton, pde, effective, scale, error=0.0):
 def test_a_rate_that_is_zero_in_the_pde_is_judged_by_the_scale():
     result = comparison(0.02, 1e-9, 0.0201, scale=0.02)
     assert result.difference == pytest.approx(1.0)
-    assert result.verdict == Verdict.AGREE_EFFECTIVE
+    assert result.verdict == Verdict.EXPLAINED
     row = result.row()
     assert row["pde"] == 0
     assert math.copysign(1, comparison(0.02, -1e-9, 0.02, 0.02).row()["pde"]) == 1

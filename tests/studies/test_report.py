@@ -15,7 +15,7 @@ import pandas as pd
 import pytest
 
 from bcre_studies import catalog, cli
-from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.claim import Claim, quality_check
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON
 from bcre_studies.publishing import finding, store, write
@@ -304,6 +304,24 @@ def test_verdict_table_has_one_row_a_claim(fake):
         "claim": ["first", "second"],
         "verdict": ["agree", "disagree"],
     }
+
+
+def test_quality_checks_leave_the_verdict_matrix_but_are_still_checked(fake, bcre, places):
+    fake.claims.append(quality_check("code", "It compiles.", Verdict.AGREE, "1 of 1", "none"))
+    bcre("report")
+    verdicts, checks = (
+        pd.read_csv(places / "reports" / name)["claim"].tolist()
+        for name in ("verdicts.csv", "quality/verdicts.csv")
+    )
+    assert (verdicts, checks) == (["first", "second"], ["code"])
+    index = (places / "reports/README.md").read_text(encoding="utf-8")
+    matrix, quality = index.split("## Quality checks")
+    assert "It compiles." not in matrix
+    assert "| It compiles. | agree |" in quality
+    fake.claims[-1] = quality_check("code", "It compiles.", Verdict.DISAGREE, "0 of 1", "none")
+    code, out, _ = bcre("check")
+    assert code == 1
+    assert "code: disagree, recorded as: agree" in out
 
 
 def test_check_after_report_finds_nothing_that_differs(fake, bcre):

@@ -4,6 +4,7 @@ import pandas as pd
 import pytest
 
 from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.models.effective import effective as effective_scene
 from bcre_studies.models.registry import AUTOMATON, BCRE
 from bcre_studies.observables.outcome import slope
 from bcre_studies.validation.repose_return import study as repose_return
@@ -12,7 +13,6 @@ from bcre_studies.validation.repose_return.study import (
     FAST,
     SLOW,
     closed_form,
-    effective_of,
     scene_of,
 )
 from bcre_studies.validation.repose_return.thin_pulse import slope_after_thin_pulse
@@ -59,7 +59,7 @@ def test_a_slope_above_repose_is_not_brought_below_the_critical_angle_by_one_pul
 def test_the_cells_own_diffusion_decides_near_the_slope_from_which_the_avalanche_climbs_back():
     scene = scene_of(SLOW, 0.6, 2.0)
     automaton, pde = final_slopes(scene)
-    effective = BCRE.run(effective_of(scene).with_changes(tolerance=1e-4), [3000.0], 100)
+    effective = BCRE.run(effective_scene(scene).with_changes(tolerance=1e-4), [3000.0], 100)
     assert automaton == pytest.approx(0, abs=1e-3)
     assert pde > 0.6
     assert slope(effective.x, effective.h[-1]) == pytest.approx(0.5, abs=1e-3)
@@ -71,7 +71,7 @@ def test_repeated_pulses_bring_a_slope_to_repose_from_above_and_towards_it_from_
     from_above = [
         slopes_of_automaton(above, 14),
         slopes_of_pde(above, 50, 14),
-        slopes_of_pde(effective_of(above), 50, 14),
+        slopes_of_pde(effective_scene(above), 50, 14),
     ]
     for slopes in from_above:
         assert slopes[0] > 0.62

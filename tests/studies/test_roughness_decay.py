@@ -97,8 +97,8 @@ def test_the_rough_slope_gets_smooth_in_the_automaton_alone(tables):
 
 def test_verdicts_tell_long_waves_from_short_ones(tables):
     verdicts = {claim.name: claim.verdict for claim in roughness_decay.judge(tables)}
-    assert verdicts["roughness of the surface, long waves"] == Verdict.AGREE_EFFECTIVE
-    assert verdicts["roughness of the rolling layer, long waves"] == Verdict.AGREE_EFFECTIVE
+    assert verdicts["roughness of the surface, long waves"] == Verdict.EXPLAINED
+    assert verdicts["roughness of the rolling layer, long waves"] == Verdict.EXPLAINED
     assert verdicts["speeds, long waves"] == Verdict.AGREE
     assert verdicts["short waves"] == Verdict.DISAGREE
     assert verdicts["closed forms"] == Verdict.AGREE

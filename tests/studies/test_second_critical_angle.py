@@ -6,13 +6,18 @@ import pytest
 import bcre_pde
 from bcre_ca.theory import second_critical_excess
 from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.models.effective import effective, effective_at_critical_slope
 from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE
 from bcre_studies.observables.outcome import Outcome
 from bcre_studies.validation.second_critical_angle import study as second_critical_angle
-from bcre_studies.validation.second_critical_angle.climb import Bracket, climb, threshold
+from bcre_studies.validation.second_critical_angle.climb import (
+    Bracket,
+    climb,
+    pulse_scene,
+    threshold,
+)
 from bcre_studies.validation.second_critical_angle.critical_slope import (
     calibrated_rule,
-    effective_for_growth,
     measure_sd_automaton,
     measure_sd_of,
     measure_sd_pde,
@@ -49,7 +54,7 @@ def test_the_Sd_of_bcre_is_v_squared_over_4_D_gamma_within_a_hundredth(material)
 def test_half_a_cells_drift_counted_as_diffusion_gives_the_automatons_Sd_on_small_cells():
     material = bcre_pde.Material(v=0.17, D=0.23, gamma=0.021, Sc=0.4)
     d = 0.2 * material.D / material.v
-    effective = measure_sd_pde(effective_for_growth(material, d)).value
+    effective = measure_sd_pde(effective_at_critical_slope(material, d)).value
     assert measure_sd_automaton(material, d) == pytest.approx(effective, rel=3e-3)
     assert measure_sd_automaton(material, d) < 0.95 * measure_sd_pde(material).value
 
@@ -76,6 +81,16 @@ def test_between_the_thresholds_only_what_has_the_cells_diffusion_climbs(
     assert climb(EFFECTIVE, 100, excess, pulse) is effective
 
 
+def test_what_counts_as_effective_has_the_step_that_the_run_takes():
+    """D + (v d/2)(1 - v dt/d) with dt = 0.2; at Sd alone D + v d/2."""
+    scene = pulse_scene(1.0, 1.0)
+    run = AUTOMATON.run(scene, [0.0, 400.0])
+    assert run.steps == pytest.approx(400.0 / scene.time.step)
+    assert pytest.approx(0.1 + 0.05 * (1 - 0.1 * scene.time.step)) == effective(scene).material.D
+    material = bcre_pde.Material(0.1, 0.1, 0.01, 0.5)
+    assert pytest.approx(0.15) == effective_at_critical_slope(material, 1.0).D
+
+
 def test_a_finite_pulse_climbs_at_less_than_an_infinitesimal_one():
     whole = Bracket(0.5, 2.75)
     small, large = (threshold(AUTOMATON, (100,), pulse, whole) for pulse in (1e-7, 5.0))
@@ -98,7 +113,7 @@ def _head(quantity):
 
 def _table(automaton_sd, automaton_outcome):
     numbers = {"pde": 2.5, "pde_effective": 1.7, "difference": 0.31, "difference_effective": 0.02}
-    effective = str(Verdict.AGREE_EFFECTIVE)
+    effective = str(Verdict.EXPLAINED)
     sd = {
         **_head(second_critical_angle.SD),
         **numbers,
@@ -157,5 +172,5 @@ def test_the_calibrated_automatons_Sd_is_that_of_its_rule_and_nearer_to_bcre(mat
 
 def test_the_evidence_names_the_cases_that_differ():
     claim = second_critical_angle.judge(_table(1.7157, "yes"))[3]
-    assert claim.verdict is Verdict.AGREE_EFFECTIVE
+    assert claim.verdict is Verdict.EXPLAINED
     assert "1 and pulse 10 (yes/no, effective yes" in claim.evidence

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 from bcre_studies.comparison.verdict import Verdict
 
@@ -17,7 +18,9 @@ class Claim:
     statement: the sentence that was put to the test.
     verdict: how it ended.
     evidence: what agrees, what does not and why, with the numbers.
-    tolerance: the threshold that stood before the study ran, with its reason.
+    tolerance: the threshold that was set before the study ran, with its reason.
+    quality: whether the claim is a check of the code, or one that no measurement can refute. Such
+        a claim is reported among the quality checks, not among the verdicts on the model.
     """
 
     name: str
@@ -25,3 +28,8 @@ class Claim:
     verdict: Verdict
     evidence: str
     tolerance: str
+    quality: bool = False
+
+
+quality_check = partial(Claim, quality=True)
+"""A claim about the code, or one that no measurement can refute."""

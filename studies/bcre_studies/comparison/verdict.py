@@ -7,10 +7,13 @@ from enum import StrEnum
 
 
 class Verdict(StrEnum):
-    """From best to worst."""
+    """From best to worst.
+
+    ``EXPLAINED`` is a difference that D_eff and kappa_eff of the automaton's cells account for.
+    """
 
     AGREE = "agree"
-    AGREE_EFFECTIVE = "agree once the automaton's own diffusion is counted"
+    EXPLAINED = "explained by cell size"
     UNRESOLVED = "unresolved"
     DISAGREE = "disagree"
 
@@ -48,5 +51,5 @@ def verdict_of(
     if not resolved:
         return Verdict.UNRESOLVED
     if resolved_effective and difference_effective <= tolerance:
-        return Verdict.AGREE_EFFECTIVE
+        return Verdict.EXPLAINED
     return Verdict.DISAGREE if resolved_effective else Verdict.UNRESOLVED

@@ -27,7 +27,7 @@ from bcre_studies.advisor.advise import Advice, Effort, advise
 from bcre_studies.advisor.deviation import deviation, uncertainty
 from bcre_studies.advisor.pilot import run_model
 from bcre_studies.advisor.question import Question
-from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.claim import Claim, quality_check
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import BCRE, CANDIDATES, SCHEMES
@@ -271,7 +271,7 @@ def _met(table: pd.DataFrame, observable: str) -> Claim:
     share = len(met) / len(judged)
     off = (met["true_error"] / met["predicted_error"]).agg(["min", "max"])
     forms = judged["closed_form_error"].dropna()
-    return Claim(
+    return quality_check(
         name=f"tolerance met in {observable}",
         statement=f"The advised model meets a tolerance of {TOLERANCE:.0%} of {observable} in at "
         f"least {MET:.0%} of random scenes.",
@@ -288,7 +288,7 @@ def _foretold(table: pd.DataFrame) -> Claim:
     met = table[table["result"] == "met"]
     share = len(met) / len(table)
     far = (table["cells"] / FEW).max()
-    return Claim(
+    return quality_check(
         name="foretold from coarse pilots",
         statement=f"Where pilots end at {FEW} cells, a scheme that is foretold to meet the "
         f"tolerance on finer ones meets it in at least {MET:.0%} of the cases.",
@@ -305,7 +305,7 @@ def _cheapest(table: pd.DataFrame) -> Claim:
     honest = not (table["result"] == "not told").any()
     worst = judged.loc[judged["dearer"].idxmax()]
     silent = table.loc[table["result"] == "unresolved", "scene"]
-    return Claim(
+    return quality_check(
         name="the cheapest",
         statement="In the built-in scenes and one more the advised model costs at most "
         f"{DEARER:g} times the cheapest that meets the tolerance, and where BCRE does not "
@@ -327,7 +327,7 @@ def _in_time(times: pd.DataFrame) -> Claim:
     advised = options[options["advised"]]
     foretold = times[times["pilots"] == "coarse"]
     share = float(advised["hit"].mean())
-    return Claim(
+    return quality_check(
         name="predicted time",
         statement=f"The predicted time of the advised model is within a factor of 2 of the "
         f"measured one in at least {IN_TIME:.0%} of random scenes.",

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
-from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.claim import Claim, quality_check
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.performance.record.record import read
 from bcre_studies.reporting import style
@@ -52,7 +52,7 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     of_automaton = ", ".join(f"{row.scene} {row.cells:.2g} cells" for row in papers.itertuples())
     of_pde = ", ".join(f"{row.scene} {row.cells:.2g}" for row in pde.itertuples())
     return [
-        Claim(
+        quality_check(
             name="ratios",
             statement="The compiled automaton is as fast as its goals say.",
             verdict=Verdict.DISAGREE if len(missed) else Verdict.AGREE,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from pathlib import Path
 
 import pandas as pd
 
@@ -18,6 +19,7 @@ from bcre_studies.reporting.pages import render
 from bcre_studies.system.files import REPORTS, replace_file, replace_text, require_writable
 
 VERDICTS = REPORTS / "verdicts.csv"
+COLUMNS = ["study", "claim", "verdict"]
 
 RUN_FIRST = ("order_of_accuracy",)
 """Its cases differ, so that two workers compile different functions; elsewhere both of them would
@@ -54,7 +56,9 @@ def decide(findings: Sequence[Finding]) -> list[DecidedClaim]:
 
 def write_index(findings: Sequence[Finding]) -> None:
     """Write the index as Markdown and as a page, the paper's claims, and record the verdicts."""
-    replace_text(VERDICTS, verdict_table(findings).to_csv(index=False, lineterminator="\n"))
+    for path, quality in zip(_verdict_files(), (False, True), strict=True):
+        table = verdict_table(findings, quality)
+        replace_text(path, table.to_csv(index=False, lineterminator="\n"))
     content = {"findings": findings, "verdicts": list(Verdict), "paper_claims": decide(findings)}
     for name in ("README.md", "index.html", "claims.md"):
         replace_text(REPORTS / name, render(f"{name}.j2", **content))
@@ -82,23 +86,35 @@ def write_studies(names: Sequence[str]) -> list[Finding]:
     return findings
 
 
-def verdict_table(findings: Sequence[Finding]) -> pd.DataFrame:
-    """Study, claim and verdict, one row a claim."""
-    return pd.DataFrame(
-        [
-            {"study": finding.name, "claim": claim.name, "verdict": str(claim.verdict)}
-            for finding in findings
-            for claim in finding.claims
-        ]
-    )
+def _verdict_files() -> tuple[Path, Path]:
+    """The verdicts on the model, and those of the quality checks."""
+    return VERDICTS, VERDICTS.parent / "quality" / VERDICTS.name
+
+
+def verdict_table(findings: Sequence[Finding], quality: bool | None = None) -> pd.DataFrame:
+    """Study, claim and verdict, one row a claim.
+
+    ``quality`` selects the quality checks or all the others; left out, every claim is listed.
+    """
+    rows = [
+        {"study": finding.name, "claim": claim.name, "verdict": str(claim.verdict)}
+        for finding in findings
+        for claim in finding.claims
+        if quality is None or claim.quality is quality
+    ]
+    return pd.DataFrame(rows, columns=COLUMNS)
 
 
 def recorded_verdicts() -> pd.DataFrame:
-    """The verdicts that the repository records."""
+    """The verdicts that the repository records, quality checks included."""
+    return pd.concat([_recorded(path) for path in _verdict_files()], ignore_index=True)
+
+
+def _recorded(path: Path) -> pd.DataFrame:
     try:
-        table = pd.read_csv(VERDICTS, dtype=str, keep_default_na=False)
+        table = pd.read_csv(path, dtype=str, keep_default_na=False)
     except ValueError as error:
-        raise ValueError(f"{VERDICTS}: must be a CSV file: {error}") from None
-    if list(table.columns) != ["study", "claim", "verdict"]:
-        raise ValueError(f"{VERDICTS}: must have the columns study,claim,verdict")
+        raise ValueError(f"{path}: must be a CSV file: {error}") from None
+    if list(table.columns) != COLUMNS:
+        raise ValueError(f"{path}: must have the columns {','.join(COLUMNS)}")
     return table

@@ -75,7 +75,7 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     if not apart:
         verdict = Verdict.AGREE
     else:
-        verdict = Verdict.AGREE_EFFECTIVE if close <= TOLERANCE else Verdict.DISAGREE
+        verdict = Verdict.EXPLAINED if close <= TOLERANCE else Verdict.DISAGREE
     return [
         Claim(
             name="random roughness",

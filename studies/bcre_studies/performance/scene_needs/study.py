@@ -32,7 +32,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.colors import BoundaryNorm, ListedColormap
 
-from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.claim import Claim, quality_check
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.observables.named import NAMES, posed, scale, value
@@ -176,7 +176,7 @@ def _needed_claim(scenes: dict[str, pd.DataFrame], ingredient: str) -> Claim:
         for scene, names in by_scene.items()
     )
     largest = changes[0][0] if changes else 0.0
-    return Claim(
+    return quality_check(
         name=f"{ingredient} is needed",
         statement=f"Some built-in scene needs {_called(ingredient)}: left out, it changes an "
         "observable by more than 5 %.",
@@ -200,7 +200,7 @@ def _stability_claim(scenes: dict[str, pd.DataFrame]) -> Claim:
         for scene, table in scenes.items()
     }
     allowed = [scene for scene, runs in rows.items() if runs == "yes"]
-    return Claim(
+    return quality_check(
         name="the step is needed for stability",
         statement="No built-in scene can be run with steps twice as long.",
         verdict=Verdict.DISAGREE if allowed else Verdict.AGREE,
@@ -217,7 +217,7 @@ def _harmless_claim(scenes: dict[str, pd.DataFrame], ingredient: str) -> Claim:
     costs = [float(row["cost"]) for row in rows if row["runs"] == "yes"]
     refused = len(rows) - len(costs)
     harmless = changed <= TOLERANCES["1"] and not refused
-    return Claim(
+    return quality_check(
         name=f"{ingredient} left out",
         statement={
             DOUBLE: "Single precision is enough for every observable of every scene.",
@@ -239,7 +239,7 @@ def _together_claim(table: pd.DataFrame) -> Claim:
         if not row[f"together_{percent}"] <= tolerance
     ]
     cases = len(table) * len(TOLERANCES)
-    return Claim(
+    return quality_check(
         name="left out together",
         statement="What can be left out one by one can be left out together.",
         verdict=Verdict.DISAGREE if broken else Verdict.AGREE,
@@ -254,7 +254,7 @@ def _smaller_claim(table: pd.DataFrame, percent: str) -> Claim:
     cost, changed = table[f"cost_{percent}"], table[f"change_{percent}"]
     holds = bool((changed <= TOLERANCES[percent]).all())
     least, most = table.loc[cost.idxmin()], table.loc[cost.idxmax()]
-    return Claim(
+    return quality_check(
         name=f"smallest models within {percent} %",
         statement=f"For every observable of every scene a cheaper model gives it within {percent} "
         "%.",
@@ -274,14 +274,14 @@ def _specialised_claim() -> Claim:
     try:
         table = specialisation.recorded()
     except OSError:
-        return Claim(name, statement, Verdict.UNRESOLVED, "there is no record", tolerance)
+        return quality_check(name, statement, Verdict.UNRESOLVED, "there is no record", tolerance)
     ratios = "; ".join(
         f"{term} " + ", ".join(f"{row.ratio:g} ({row.cells:g} cells)" for row in rows.itertuples())
         for term, rows in table.groupby("term", sort=False)
     )
     own = table[table["term"].isin(specialisation.TERMS)]
     gains = len(own) > 0 and bool((own["ratio"] > 1).all())
-    return Claim(
+    return quality_check(
         name,
         statement,
         Verdict.AGREE if gains else Verdict.DISAGREE,

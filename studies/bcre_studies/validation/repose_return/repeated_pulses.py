@@ -22,9 +22,10 @@ def slopes_of_automaton(scene: Scene, pulses: int) -> list[float]:
     """Slope S after each of so many of the scene's pulses, ``scene.time.until`` apart."""
     h, pulse = scene.initial(scene.centres())
     pile = bcre_ca.Pile(h, pulse)
+    rule, ends, time = rule_of(scene), scene.domain.ends, scene.time
     slopes = []
     for _ in range(pulses):
-        (pile,) = bcre_ca.frames(pile, rule_of(scene), [scene.time.until], scene.domain.ends)
+        (pile,) = bcre_ca.frames(pile, rule, [time.until], ends, time.step)
         slopes.append(slope(scene.centres(), pile.h))
         pile = bcre_ca.Pile(pile.h, pile.R + pulse)
     return slopes

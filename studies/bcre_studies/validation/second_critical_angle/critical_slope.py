@@ -116,16 +116,6 @@ def measure_sd_pde(material: bcre_pde.Material) -> bcre_pde.Measured:
     return bcre_pde.Measured(fine, bcre_pde.grid_convergence_index(fine, medium, coarse).error)
 
 
-def effective_for_growth(material: bcre_pde.Material, d: float) -> bcre_pde.Material:
-    """BCRE with the diffusion that the automaton has at Sd: D_eff = D + v d/2.
-
-    The part -v^2 dt/2 of D_eff stands for the Euler step's (dt/2) R_tt, with R_tt = v^2 R_xx of a
-    layer that is carried and does not grow. At Sd nothing changes in time at the fixed place:
-    R_tt = 0, the part falls away, and Sd does not depend on dt.
-    """
-    return replace(material, D=material.D + material.v * d / 2)
-
-
 def _root(rate: Callable[[float], float], start: float, spread: float, relative: float) -> float:
     """Zero of the rate, by secants that start about ``start`` and end wherever it is."""
     spread = min(spread, 0.2)

@@ -35,7 +35,7 @@ import pandas as pd
 import bcre_ca
 import bcre_pde
 from bcre_ca.rule import Scheme
-from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.claim import Claim, quality_check
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON, BCRE, Look
@@ -210,7 +210,7 @@ def _finite(tables: dict[str, pd.DataFrame]) -> Claim:
     numbers = [float(cell) for cell in cells if isinstance(cell, int | float)]
     bad = sum(not math.isfinite(number) for number in numbers)
     missing = sum(cell is None for cell in cells)
-    return Claim(
+    return quality_check(
         name="finite",
         statement="No NaN or infinity in any table of this study.",
         verdict=_word(bad == 0 and missing == 0),
@@ -222,7 +222,7 @@ def _finite(tables: dict[str, pd.DataFrame]) -> Claim:
 def _mass(table: pd.DataFrame) -> Claim:
     long = table[table["scene"] == long_run().name]["mass_error_at_most"]
     known = [float(error) for error in table["mass_error_at_most"] if error != ""]
-    return Claim(
+    return quality_check(
         name="mass",
         statement=f"The mass error is at most {MASS:g} after 10^7 steps.",
         verdict=_word(len(long) and all(error != "" and float(error) <= MASS for error in long)),
@@ -238,7 +238,7 @@ def _says_where(table: pd.DataFrame) -> Claim:
     where = [all(part in text for part in ("t = ", "cell ", " = ")) for text in failing["told"]]
     what = ["must" in text and " = " in text for text in refused["told"]]
     survived = table["verdict"].str.startswith(SURVIVES).sum()
-    return Claim(
+    return quality_check(
         name="each failing model says where",
         statement="Each failing model says in which cell, when and by which bound, and each that "
         "refuses to start names what is not allowed.",

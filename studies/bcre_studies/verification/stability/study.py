@@ -35,10 +35,9 @@ from scipy.optimize import bisect
 
 import bcre_ca
 import bcre_pde
-from bcre_ca import kernels
 from bcre_pde import Method, theory
 from bcre_pde.explicit import ExplicitMethod
-from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.claim import Claim, quality_check
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON, BCRE, MODELS, Look
@@ -251,7 +250,7 @@ def _positivity(variant: Variant) -> Row:
 
         def stays(numbers: Numbers) -> bool:
             h, R = np.zeros_like(start), start.copy()
-            kernels.march(h, R, rule_with(numbers, variant), 1, "periodic")
+            bcre_ca.march(h, R, rule_with(numbers, variant), 1, "periodic")
             return bool(R.min() >= 0)
 
         ratios.append(_last(stays, ray.times(bound), 0.5, 4.0))
@@ -303,8 +302,8 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     return [
         _predicted("the automaton's rules", table[automaton & ~limited], LINEAR),
         _predicted("the flux-limited rule", table[limited], LIMITED),
-        _predicted("BCRE by runge-kutta and RK45", table[~automaton & ~dop853], EXPLICIT),
-        _predicted("BCRE by DOP853", table[dop853], DOP853),
+        _predicted("BCRE by runge-kutta and RK45", table[~automaton & ~dop853], EXPLICIT, True),
+        _predicted("BCRE by DOP853", table[dop853], DOP853, True),
         _bounds(table, tables["positivity"]),
         _implicit_methods(tables["implicit"]),
     ]
@@ -327,7 +326,7 @@ DOP853 = (
 )
 
 
-def _predicted(what: str, rows: pd.DataFrame, why: str) -> Claim:
+def _predicted(what: str, rows: pd.DataFrame, why: str, quality: bool = False) -> Claim:
     wrong, farthest = int(rows["predicted_stable_but_grows"].sum()), rows["distance_percent"].max()
     worst = rows.loc[rows["distance_percent"].idxmax()]
     good = wrong == 0 and farthest <= 100 * GOAL
@@ -341,6 +340,7 @@ def _predicted(what: str, rows: pd.DataFrame, why: str) -> Claim:
         f"{rows['distance_visible_percent'].max():g} % from where growth by 10 in the steps taken "
         f"is predicted. {why}",
         tolerance=WHY,
+        quality=quality,
     )
 
 
@@ -350,7 +350,7 @@ def _bounds(table: pd.DataFrame, positivity: pd.DataFrame) -> Claim:
     limited = positivity[positivity["variant"] == "limited"].iloc[0]
     good = passed == 0 and (positivity["verdict"] == str(Verdict.AGREE)).all()
     pde = table[table["variant"] == "runge-kutta"]
-    return Claim(
+    return quality_check(
         name="known before it happens",
         statement="No step that a model's own bound lets pass is unstable, and none of the "
         "automaton's makes a layer negative.",
@@ -367,7 +367,7 @@ def _bounds(table: pd.DataFrame, positivity: pd.DataFrame) -> Claim:
 
 def _implicit_methods(table: pd.DataFrame) -> Claim:
     good = (table["verdict"] == str(Verdict.AGREE)).all()
-    return Claim(
+    return quality_check(
         name="methods without a boundary",
         statement=f"LSODA and BDF stay bounded at {TEN} times the explicit step.",
         verdict=Verdict.AGREE if good else Verdict.DISAGREE,
