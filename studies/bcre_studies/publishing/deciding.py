@@ -12,6 +12,7 @@ import pandas as pd
 
 from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.models.registry import AUTOMATON, BCRE
 from bcre_studies.publishing.wording import fixed, number, of, percent, span
 
 Key = tuple[str, str]
@@ -38,7 +39,7 @@ def deciding_number(evidence: Sequence[tuple[str, Claim]], tables: Mapping[str, 
 def _returned(tables: Tables) -> str:
     rows = of(tables["comparison"], quantity="final S - Sc", pulses=1)
     near = rows[(rows["case"] != "repeated") & (rows["S0 - Sc"] > 0) & (rows["S0 - Sc"] <= 0.3)]
-    fell = [int((near[model].astype(float) < 0).sum()) for model in ("automaton", "pde")]
+    fell = [int((near[model].astype(float) < 0).sum()) for model in (AUTOMATON.column, BCRE.column)]
     return (
         f"below Sc after a pulse: {fell[0]} of {len(near)} slopes near repose (in BCRE {fell[1]})"
     )
@@ -49,7 +50,7 @@ def _roughness(tables: Tables) -> str:
     row = rows.iloc[(rows["k"] - 0.5).abs().argmin()]
     return (
         f"decay rate of the surface at k = {row['k']:.1g}: {number(float(row['automaton']), 2)} "
-        f"against {number(max(float(row['pde']), 0.0), 1)} in BCRE"
+        f"against {number(max(float(row[BCRE.column]), 0.0), 1)} in BCRE"
     )
 
 
@@ -58,7 +59,7 @@ def _uphill(tables: Tables) -> str:
     row = rows.iloc[(rows["value"] - 2.1).abs().argmin()]
     return (
         f"front of the rolling layer at S − Sc = {number(float(row['value']))}: "
-        f"{number(float(row['automaton']), 2)} against {number(float(row['pde']), 2)} in BCRE"
+        f"{number(float(row['automaton']), 2)} against {number(float(row[BCRE.column]), 2)} in BCRE"
     )
 
 
@@ -71,7 +72,7 @@ def _sd(tables: Tables) -> str:
     row = of(tables["comparison"], quantity="Sd - Sc").iloc[0]
     return (
         f"Sd − Sc at figure 1’s parameters: {fixed(float(row['automaton']))} against "
-        f"{fixed(float(row['pde']))} in BCRE"
+        f"{fixed(float(row[BCRE.column]))} in BCRE"
     )
 
 

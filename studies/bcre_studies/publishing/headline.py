@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import pandas as pd
 
+from bcre_studies.models.registry import AUTOMATON, BCRE
 from bcre_studies.publishing.wording import (
     figure_name,
     fixed,
@@ -164,10 +165,13 @@ def _slopes(table: pd.DataFrame) -> CriticalSlopes:
     gaps = [
         abs(float(row[model]) / float(row[f"{model}_theory"]) - 1)
         for _, row in rows.iterrows()
-        for model in ("automaton", "pde")
+        for model in (AUTOMATON.column, BCRE.column)
     ]
     return CriticalSlopes(
-        float(first["automaton"]), float(first["automaton d/4"]), float(first["pde"]), max(gaps)
+        float(first["automaton"]),
+        float(first["automaton d/4"]),
+        float(first[BCRE.column]),
+        max(gaps),
     )
 
 
@@ -175,12 +179,12 @@ def _pulses(table: pd.DataFrame) -> Pulses:
     rows = of(table, quantity="final S - Sc", pulses=1)
     rows = rows[(rows["case"] != "repeated") & (rows["S0 - Sc"] > 0)]
     start, end = rows["S0 - Sc"].astype(float), rows["automaton"].astype(float)
-    highest = rows[["automaton", "pde"]].astype(float).max(axis=1)
+    highest = rows[[AUTOMATON.column, BCRE.column]].astype(float).max(axis=1)
     most = (highest - start).idxmax()
     return Pulses(
         cases=len(rows),
         came_down=int((end.abs() <= AT_REPOSE).sum()),
-        came_down_bcre=int((rows["pde"].astype(float).abs() <= AT_REPOSE).sum()),
+        came_down_bcre=int((rows[BCRE.column].astype(float).abs() <= AT_REPOSE).sum()),
         steeper=int((end > start).sum()),
         most_steepened=(float(start[most]), float(highest[most])),
         below=int((end < -AT_REPOSE).sum()),
@@ -215,8 +219,8 @@ def _race(reach: pd.DataFrame, error: float) -> Race:
 
 def _orders(table: pd.DataFrame) -> tuple[float, float]:
     """Median observed order of the paper's rule and of BCRE's right-hand side."""
-    upwind = table[(table["model"] == "ca") & table["scheme"].str.contains("^0|^[0-9]")]
-    pde = table[table["model"] == "pde"]
+    upwind = table[(table["model"] == AUTOMATON.name) & table["scheme"].str.contains("^0|^[0-9]")]
+    pde = table[table["model"] == BCRE.name]
     return float(upwind["order_L1"].median()), float(pde["order_L1"].median())
 
 

@@ -195,7 +195,7 @@ def phase_diagram(comparison: pd.DataFrame, paper: tuple[float, float]) -> Figur
     rows = comparison[comparison["quantity"] == THRESHOLD].sort_values("pulse")
     pulse = rows["pulse"].astype(float).to_numpy()
     own, finer, bcre = (
-        rows[name].astype(float).to_numpy() for name in ("automaton", "automaton d/4", "pde")
+        rows[name].astype(float).to_numpy() for name in ("automaton", "automaton d/4", BCRE.column)
     )
     figure, (axis,) = _panels(1, 1, width=4.7, height=3.7)
     axis.fill_between(pulse, 0, own, color="0.55", alpha=0.08, linewidth=0)

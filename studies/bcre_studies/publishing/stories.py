@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 import pandas as pd
 
+from bcre_studies.models.registry import AUTOMATON, BCRE
 from bcre_studies.publishing.wording import (
     PERCENT,
     figure_name,
@@ -113,23 +114,25 @@ def _roughness_decay(tables: Tables) -> list[str]:
         "Waves of one length are laid on the surface, or on the rolling layer, and followed.",
         f"Waves of the surface decay in the automaton, at k = {at['k']:.2g} by "
         f"{number(float(at['automaton']), 2)} per time; in BCRE with κ = 0 by "
-        f"{number(float(at['pde']), 1)} ± {number(float(at['pde_error']), 1)}.",
-        f"A rough slope under a steady layer keeps {percent(left['ca'])} of its roughness in the "
-        f"automaton and {percent(left['pde'])} in BCRE.",
+        f"{number(float(at[BCRE.column]), 1)} ± {number(float(at['pde_error']), 1)}.",
+        "A rough slope under a steady layer keeps "
+        f"{percent(left[AUTOMATON.name])} of its roughness in the automaton and "
+        f"{percent(left[BCRE.name])} in BCRE.",
     ]
 
 
 def _random_roughness(tables: Tables) -> list[str]:
     rows = tables["comparison"].set_index("model")
-    apart = rows.loc["automaton", "high"] < rows.loc["pde", "low"]
+    apart = rows.loc["automaton", "high"] < rows.loc[BCRE.column, "low"]
     return [
         f"The same slope with {int(rows['seeds'].iloc[0])} random surfaces, one a seed.",
         f"In the mean {percent(rows.loc['automaton', 'mean'])} of the roughness is left in the "
-        f"automaton, {percent(rows.loc['pde', 'mean'])} in BCRE, "
+        f"automaton, {percent(rows.loc[BCRE.column, 'mean'])} in BCRE, "
         f"{percent(rows.loc['pde_effective', 'mean'])} in BCRE with D_eff and κ_eff.",
         f"The 95 % intervals over seeds are {number(rows.loc['automaton', 'low'], 4)} to "
-        f"{number(rows.loc['automaton', 'high'], 4)} and {number(rows.loc['pde', 'low'], 4)} to "
-        f"{number(rows.loc['pde', 'high'], 4)}: the difference is "
+        f"{number(rows.loc['automaton', 'high'], 4)} and "
+        f"{number(rows.loc[BCRE.column, 'low'], 4)} to "
+        f"{number(rows.loc[BCRE.column, 'high'], 4)}: the difference is "
         + ("no matter of the seed." if apart else "not larger than that between seeds."),
     ]
 
@@ -138,7 +141,7 @@ def _uphill(tables: Tables) -> list[str]:
     rows = tables["comparison"]
     front = of(rows, quantity="front speed V", d=1.0)
     wave = of(rows, quantity="surface wave speed", d=1.0)
-    opposite = front[(front["automaton"] > 0) & (front["pde"] < 0)]
+    opposite = front[(front["automaton"] > 0) & (front[BCRE.column] < 0)]
     sentences = [
         "Four mechanisms are measured apart: the front of the rolling layer, waves of the surface, "
         "the scarp, and how far figure 3’s pulse reaches.",
@@ -150,7 +153,7 @@ def _uphill(tables: Tables) -> list[str]:
         sentences.append(
             f"The rolling layer climbs only above Sd: at S − Sc = {number(row['value'])} that of "
             f"the automaton climbs at {number(row['automaton'], 2)} while BCRE’s is swept down at "
-            f"{number(abs(row['pde']), 2)}."
+            f"{number(abs(row[BCRE.column]), 2)}."
         )
     return sentences
 
@@ -160,7 +163,7 @@ def _critical(tables: Tables) -> list[str]:
     sd = of(rows, quantity="Sd - Sc")
     thresholds = of(rows, quantity="threshold S0 - Sc").sort_values("pulse")
     first, small, large = sd.iloc[0], thresholds.iloc[0], thresholds.iloc[-1]
-    own, bcre = float(first["automaton"]), float(first["pde"])
+    own, bcre = float(first["automaton"]), float(first[BCRE.column])
     return [
         "Growth at a fixed place, from a layer too thin to change the slope, gives Sd; runs with "
         "finite pulses show from which slope on the avalanche climbs to the top.",
@@ -168,8 +171,9 @@ def _critical(tables: Tables) -> list[str]:
         f"BCRE; over all parameters it is {span_of(sd['difference'])} lower in the automaton.",
         f"With a pulse of {number(float(large['pulse']))} the slope comes down from "
         f"{fixed(float(large['automaton']))} on in the automaton and from "
-        f"{fixed(float(large['pde']))} on in BCRE, against {fixed(float(small['automaton']))} and "
-        f"{fixed(float(small['pde']))} for a vanishing one.",
+        f"{fixed(float(large[BCRE.column]))} on in BCRE, against "
+        f"{fixed(float(small['automaton']))} and {fixed(float(small[BCRE.column]))} for a "
+        "vanishing one.",
     ]
 
 
@@ -224,8 +228,8 @@ def _one_variable(tables: Tables) -> list[str]:
 
 def _orders(tables: Tables) -> list[str]:
     rows = tables["comparison"]
-    upwind = rows[(rows["model"] == "ca") & rows["scheme"].str.match(r"\d")]
-    pde = rows[rows["model"] == "pde"]
+    upwind = rows[(rows["model"] == AUTOMATON.name) & rows["scheme"].str.match(r"\d")]
+    pde = rows[rows["model"] == BCRE.name]
     past = tables.get("past_breaking")
     sentences = [
         f"Both models run {rows['solution'].nunique()} exact solutions on five grids each; the "
@@ -291,7 +295,7 @@ def _scene_needs(tables: Tables) -> list[str]:
 
 def _stability(tables: Tables) -> list[str]:
     rows = tables["comparison"]
-    own = rows[(rows["model"] == "ca") & ~rows["variant"].str.startswith("limited")]
+    own = rows[(rows["model"] == AUTOMATON.name) & ~rows["variant"].str.startswith("limited")]
     return [
         "Noise on a small periodic pile is stepped; a step is unstable where the noise grows.",
         f"For the automaton’s own rules the measured boundary lies within "
@@ -314,8 +318,8 @@ def _hard_cases(tables: Tables) -> list[str]:
         f"Of {len(rows)} runs {int(ended.sum())} come to their end, {int(refused.sum())} are "
         f"refused before the start and {int((~ended & ~refused).sum())} stop on the way, saying "
         "where and why.",
-        f"R falls below zero in {int((negative & (rows['model'] == 'ca')).sum())} runs of the "
-        f"automaton and {int((negative & (rows['model'] == 'pde')).sum())} of BCRE.",
+        f"R falls below zero in {int((negative & (rows['model'] == AUTOMATON.name)).sum())} runs "
+        f"of the automaton and {int((negative & (rows['model'] == BCRE.name)).sum())} of BCRE.",
     ]
 
 

@@ -56,6 +56,9 @@ COLOURS = {
 }
 """Colours that the style sheet names; all others stay as they are."""
 
+MEASURES = re.compile("d|x|y|points|transform|width|height")
+"""Attributes that hold numbers."""
+
 _COLOUR = re.compile(r"#[0-9a-f]{6}")
 _NUMBER = re.compile(r"-?\d+\.\d+")
 _FAMILY = re.compile(r"font: ([\w ]*?)([\d.]+px)[^;]*")
@@ -193,7 +196,7 @@ def _clean(part: ElementTree.Element, prefix: str, wanted: set[str]) -> None:
             value = value.replace("#", f"#{prefix}-")
         elif name == "style":
             value = _styled(value).replace("url(#", f"url(#{prefix}-")
-        elif name in ("d", "x", "y", "points", "transform", "width", "height"):
+        elif MEASURES.fullmatch(name):
             value = _short(value)
         part.attrib[name] = value
 
