@@ -61,7 +61,11 @@ class Bcre(Adapter):
         ------
         bcre_pde.SolveError
             where the solver gives up.
+        SceneError
+            where the grid cannot hold the start.
         """
+        if cells is not None:
+            scene.require_held(cells, "solver.cells")
         problem = problem_of(self._of(scene))
         options = solver_options(scene, stop)
         return run_of(scene, bcre_pde.solve(problem, times, cells or finest(scene), **options))
@@ -95,7 +99,7 @@ class Bcre(Adapter):
                 grids = {"coarsest": _coarsest(scene), "finest": finest(scene)}
                 found = bcre_pde.solve_refined(problem, times, measure, allowed, **grids, **options)
             else:
-                (found,) = bcre_pde.measure_refined(measure_on, _given_grids(scene.solver.cells))
+                (found,) = bcre_pde.measure_refined(measure_on, _given_grids(scene))
         except bcre_pde.SolveError as failure:
             raise SceneError(
                 f"solver.method = {scene.solver.method!r}: {failure}; must be a method that can "
@@ -165,9 +169,21 @@ def run_of(scene: Scene, solution: bcre_pde.Solution, error: float | None = None
     )
 
 
-def _given_grids(cells: int) -> list[int]:
-    """The scene's own PDE grid, and for its error two that are two and four times coarser."""
-    return [grid for grid in (cells // 4, cells // 2, cells) if grid >= bcre_pde.SMALLEST_GRID]
+def _given_grids(scene: Scene) -> list[int]:
+    """The scene's own PDE grid, and for its error two that are two and four times coarser.
+
+    Those that cannot hold the start tell nothing of the error and are left out.
+    """
+    cells = scene.solver.cells or 0
+    return [grid for grid in (cells // 4, cells // 2, cells) if _serves(scene, grid)]
+
+
+def _serves(scene: Scene, cells: int) -> bool:
+    try:
+        scene.require_held(cells)
+    except SceneError:
+        return False
+    return cells >= bcre_pde.SMALLEST_GRID
 
 
 def _coarsest(scene: Scene) -> int:
