@@ -336,7 +336,7 @@ def test_check_after_report_finds_nothing_that_differs(fake, bcre):
 
 
 @pytest.mark.parametrize(
-    ("now", "told"),
+    ("now", "line"),
     [
         ([("first", "AGREE"), ("second", "AGREE")], "second: agree, recorded as: disagree"),
         ([("first", "UNRESOLVED"), ("second", "DISAGREE")], "unresolved, recorded as: agree"),
@@ -347,12 +347,12 @@ def test_check_after_report_finds_nothing_that_differs(fake, bcre):
         ),
     ],
 )
-def test_check_ends_with_1_where_a_verdict_differs_from_the_recorded_one(fake, bcre, now, told):
+def test_check_ends_with_1_where_a_verdict_differs_from_the_recorded_one(fake, bcre, now, line):
     bcre("report")
     fake.claims = [claim(name, Verdict[verdict]) for name, verdict in now]
     code, out, _ = bcre("check")
     assert code == 1
-    assert told in out
+    assert line in out
     assert ", 1 differ" in out
 
 
