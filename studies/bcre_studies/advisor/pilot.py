@@ -23,7 +23,7 @@ from bcre_studies.models.automaton import rule_of
 from bcre_studies.models.bcre import problem_of
 from bcre_studies.models.registry import BCRE, CANDIDATES, SCHEMES
 from bcre_studies.models.run import Run
-from bcre_studies.scenes.scene import Scene, SceneError
+from bcre_studies.scenes.scene import Scene
 from bcre_studies.timing.costs import Costs, closures_of
 
 COARSEST = 25
@@ -135,14 +135,11 @@ def coarsest(scene: Scene, finest: int = FINEST) -> int:
     """
     cells = COARSEST
     most = finest >> (LEAST_PILOTS - 1)
-    while cells <= most:
-        try:
-            scene.require_held(cells)
-        except SceneError:
-            cells *= 2
-        else:
-            return cells
-    raise PilotError(f"{most} cells are wider than parts of the start")
+    while not scene.holds(cells):
+        cells *= 2
+        if cells > most:
+            raise PilotError(f"{most} cells are wider than parts of the start")
+    return cells
 
 
 @dataclass(frozen=True)

@@ -197,15 +197,8 @@ def _given_grids(scene: Scene) -> list[int]:
     Those that cannot hold the start tell nothing of the error and are left out.
     """
     cells = scene.solver.cells or 0
-    return [grid for grid in (cells // 4, cells // 2, cells) if _serves(scene, grid)]
-
-
-def _serves(scene: Scene, cells: int) -> bool:
-    try:
-        scene.require_held(cells)
-    except SceneError:
-        return False
-    return cells >= bcre_pde.SMALLEST_GRID
+    grids = (cells // 4, cells // 2, cells)
+    return [grid for grid in grids if grid >= bcre_pde.SMALLEST_GRID and scene.holds(grid)]
 
 
 def _coarsest(scene: Scene) -> int:

@@ -144,6 +144,11 @@ class Scene(StrictTable):
                 if why := term.beyond(self.domain, cells):
                     raise SceneError(f"{layer}.{index}.{why} ({key} = {cells})")
 
+    def holds(self, cells: int) -> bool:
+        """Whether so many cells can hold the initial profile."""
+        parts = (*self.surface, *self.rolling)
+        return not any(term.beyond(self.domain, cells) for term in parts)
+
     def initial(self, x: Array) -> tuple[Array, Array]:
         """h and R at positions x at t = 0, the same functions for every grid and model."""
         h, R = np.zeros_like(x), np.zeros_like(x)
