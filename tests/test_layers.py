@@ -9,6 +9,7 @@ import bcre_studies
 from bcre_studies import catalog
 
 LAYERS = (
+    "__main__",
     "cli",
     "commands",
     "publishing",

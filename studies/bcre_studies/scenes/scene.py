@@ -158,6 +158,11 @@ class Scene(StrictTable):
             R += rolling.layer(x, self.domain)
         return h, R
 
+    def tables(self) -> list[Path]:
+        """The CSV files that its profiles come from."""
+        terms = (*self.surface, *self.rolling)
+        return [self._folder / term.file for term in terms if term.kind == "table"]
+
     def with_changes(self, **changes: Any) -> Scene:
         """A copy with values replaced: ``with_changes(v=0.2, **{"rolling.0.width": 1.0})``."""
         return override(self, changes)
