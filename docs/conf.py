@@ -15,7 +15,7 @@ from bcre_studies.reporting.page.mathml import formula
 
 project = "Sandpile automaton and BCRE"
 author = "The bcre-validation authors"
-project_copyright = "MIT licence"
+project_copyright = "the bcre-validation authors, MIT licence"
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 myst_enable_extensions = ["deflist"]
@@ -28,7 +28,7 @@ html_math_renderer = "mathml"
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
-autodoc_default_options = {"members": True}
+autodoc_default_options = {"members": True, "exclude-members": "model_config"}
 
 TITLES = {"Parameters": "Args:", "Returns": "Returns:"}
 SIGNS = re.compile(r"(?<![`\\])[|*](?!`)")
