@@ -181,7 +181,7 @@ def load(source: str | Path, overrides: Sequence[str] = ()) -> Scene:
     (2.5, 0.2, 1.0)
     >>> load("figure2", overrides=["D=-1"])
     Traceback (most recent call last):
-    bcre_studies.scenes.scene.SceneError: material.D = -1: must be greater than or equal to 0
+    bcre_studies.scenes.refusal.SceneError: material.D = -1: must be greater than or equal to 0
     """
     path = Path(source)
     if str(source) in built_in_names():
