@@ -20,6 +20,7 @@ from bcre_studies.cli import app
 from bcre_studies.models.run import frame_times
 from bcre_studies.performance import advice as study
 from bcre_studies.performance.random_scenes import random_scene
+from bcre_studies.running.place import Origin
 from bcre_studies.running.run import run_scene
 from bcre_studies.scenes.scene import load
 from bcre_studies.timing.costs import recorded
@@ -248,7 +249,7 @@ def test_a_scene_written_elsewhere_is_the_same_scene(tmp_path):
     scene = load("climbing_wave").with_changes(title='a "quoted" \x7f title', kappa=1e-5)
     path = tmp_path / "far" / "scene.toml"
     path.parent.mkdir()
-    path.write_text(scene_text(scene, path.parent, "a comment"), encoding="utf-8")
+    path.write_text(scene_text(scene, path.parent, "# a comment"), encoding="utf-8")
     again = load(path)
     x = scene.centres(77)
     assert (np.array(again.initial(x)) == np.array(scene.initial(x))).all()
@@ -257,7 +258,7 @@ def test_a_scene_written_elsewhere_is_the_same_scene(tmp_path):
 
 def test_what_is_written_runs_as_foretold(tmp_path):
     path = tmp_path / "advised.toml"
-    text = answer(Question(load("climbing_wave"), 0.01, frames=3), "wave", path)
+    text = answer(Question(load("climbing_wave"), 0.01, frames=3), Origin("climbing_wave"), path)
     assert "recommended:" in text
     assert f"bcre run {path} --model" in text
     advised = load(path)

@@ -55,6 +55,11 @@ BOTH = {
     "mass_error",
     "R_min",
     "R_max",
+    "scene",
+    "title",
+    "changes",
+    "version",
+    "seed",
 }
 SHORT = ("--set", "until=2", "--frames", "3")
 

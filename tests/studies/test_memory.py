@@ -23,11 +23,12 @@ CASES = [
 MEASURE = """
 import gc, json, sys
 from pathlib import Path
+from bcre_studies.running.place import Origin
 from bcre_studies.running.run import run_scene, write_run
 from bcre_studies.scenes.scene import load
 
 def run(model, frames, changes):
-    write_run(run_scene(load("figure2", changes), model, frames), Path("out"))
+    write_run(run_scene(load("figure2", changes), model, frames), Path("out"), Origin("figure2"))
 
 def peak():
     status = Path("/proc/self/status").read_text().splitlines()

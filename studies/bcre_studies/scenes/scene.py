@@ -158,6 +158,11 @@ class Scene(StrictTable):
             R += rolling.layer(x, self.domain)
         return h, R
 
+    def tables(self) -> list[Path]:
+        """The CSV files that its profiles come from."""
+        terms = (*self.surface, *self.rolling)
+        return [self._folder / term.file for term in terms if term.kind == "table"]
+
     def with_changes(self, **changes: Any) -> Scene:
         """A copy with values replaced: ``with_changes(v=0.2, **{"rolling.0.width": 1.0})``."""
         return override(self, changes)
@@ -170,6 +175,13 @@ def load(source: str | Path, overrides: Sequence[str] = ()) -> Scene:
     ------
     SceneError
         where the scene is not to be found or not allowed.
+
+    >>> scene = load("figure2", overrides=["D=0.2"])
+    >>> scene.material.v, scene.material.D, scene.d
+    (2.5, 0.2, 1.0)
+    >>> load("figure2", overrides=["D=-1"])
+    Traceback (most recent call last):
+    bcre_studies.scenes.scene.SceneError: material.D = -1: must be greater than or equal to 0
     """
     path = Path(source)
     if str(source) in built_in_names():
