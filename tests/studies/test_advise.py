@@ -13,7 +13,7 @@ from bcre_studies.advisor.advise import Effort, advise
 from bcre_studies.advisor.candidate import SAFETY, Candidate, Pilot
 from bcre_studies.advisor.closed_forms import closed_form
 from bcre_studies.advisor.deviation import OBSERVABLES, deviation, posed, uncertainty
-from bcre_studies.advisor.pilot import Allowance, PilotError, reference, run_model, sees_start
+from bcre_studies.advisor.pilot import Allowance, PilotError, coarsest, reference, run_model
 from bcre_studies.advisor.question import Question, seconds_of
 from bcre_studies.advisor.scene_text import scene_text
 from bcre_studies.cli import app
@@ -151,9 +151,10 @@ def test_with_kappa_the_scarp_is_resolved_and_upwind_is_not_foretold():
 
 
 def test_a_pulse_between_the_cells_of_every_pilot_is_not_taken_for_nothing():
-    thin = load("figure2").with_changes(**{"rolling.0.width": 0.01})
-    assert not sees_start(thin, 1600)
-    assert sees_start(load("figure2"), 100)
+    thin = load("figure2").with_changes(cells=10_000, **{"rolling.0.width": 0.01})
+    assert [coarsest(load(name)) for name in ("figure2", "figure1", "rough_slope")] == [25, 50, 100]
+    with pytest.raises(PilotError, match="wider than parts of the start"):
+        coarsest(load("rough_slope"), finest=200)
     advice = advise(Question(thin), counted())
     assert not advice.options
     assert "wider than parts of the start" in advice.why
@@ -304,7 +305,7 @@ def test_the_command_says_and_writes_what_is_advised(tmp_path):
 
 def test_the_command_says_that_nothing_can_be_advised_and_writes_nothing(tmp_path):
     path = tmp_path / "x.toml"
-    thin = ["--set", "rolling.0.width=0.01"]
+    thin = ["--set", "rolling.0.width=0.01", "--set", "cells=10000"]
     done = CliRunner().invoke(app, ["advise", "figure2", *thin, "--out", str(path)])
     assert done.exit_code == 0
     assert "unresolved:" in done.output

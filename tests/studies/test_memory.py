@@ -43,7 +43,7 @@ def growth(case):
     return peak() - before
 
 for method in ("runge-kutta", "BDF"):  # the compiler takes more memory than a run
-    run("both", 2, ["until=0.001", "cells=10", "solver.cells=32", f"method={method}"])
+    run("both", 2, ["until=0.001", "cells=25", "solver.cells=32", f"method={method}"])
 print(json.dumps([growth(case) for case in json.loads(sys.argv[1])]))
 """
 

@@ -41,7 +41,8 @@ def answer(question: Question, origin: Origin, path: Path) -> str:
         where the scene cannot be run; OSError where the file cannot be written.
     """
     require_writable("--out", path.parent, (path.name,))
-    require_runnable(with_model(question.scene, BCRE.name, COARSEST), BCRE.name, question.frames)
+    cells = max(question.scene.domain.cells, COARSEST)  # which hold the start
+    require_runnable(with_model(question.scene, BCRE.name, cells), BCRE.name, question.frames)
     console = Console(stderr=True)
     with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
         task = progress.add_task("pilots", total=None)
