@@ -23,7 +23,7 @@ class Entry(NamedTuple):
 
 
 STUDIES = {
-    "paper_figures": Entry("validation.paper_figures", "The paper's figures in both models"),
+    "paper_figures": Entry("validation.paper_figures.study", "The paper's figures in both models"),
     "repose_return": Entry("validation.repose_return.study", "Return to the angle of repose"),
     "roughness_decay": Entry("validation.roughness_decay", "Decay of roughness, mode by mode"),
     "random_roughness": Entry(
