@@ -28,8 +28,8 @@ import pandas as pd
 
 from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.compare import compare
-from bcre_studies.comparison.error import SHARE
 from bcre_studies.comparison.verdict import Verdict, worst
+from bcre_studies.models.bcre import SHARE
 from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED, MODELS, SCHEMES
 from bcre_studies.models.run import frame_times, profiles
 from bcre_studies.observables.fronts import climb_time
