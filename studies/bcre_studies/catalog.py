@@ -25,12 +25,12 @@ class Entry(NamedTuple):
 STUDIES = {
     "paper_figures": Entry("validation.paper_figures.study", "The paper's figures in both models"),
     "repose_return": Entry("validation.repose_return.study", "Return to the angle of repose"),
-    "roughness_decay": Entry("validation.roughness_decay", "Decay of roughness, mode by mode"),
+    "roughness_decay": Entry("validation.roughness_decay.study", "Decay of roughness by mode"),
     "random_roughness": Entry(
         "validation.random_roughness", "Decay of random roughness over 32 seeds"
     ),
     "uphill_propagation": Entry(
-        "validation.uphill_propagation", "Uphill propagation, one mechanism at a time"
+        "validation.uphill_propagation.study", "Uphill propagation, one mechanism at a time"
     ),
     "second_critical_angle": Entry(
         "validation.second_critical_angle.study", "The second critical angle"
