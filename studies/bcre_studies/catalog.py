@@ -39,7 +39,7 @@ STUDIES = {
         "verification.modified_equation",
         "How much of the difference is the automaton's own diffusion?",
     ),
-    "printed_rule": Entry("validation.printed_rule", "The printed rule, read in every way"),
+    "printed_rule": Entry("validation.printed_rule.study", "The printed rule, read in every way"),
     "one_variable": Entry(
         "validation.one_variable", "Control: which properties need the second layer?"
     ),

@@ -15,6 +15,6 @@ def sentences(*texts: str) -> str:
     return ". ".join(text[:1].upper() + text[1:] for text in texts if text)
 
 
-def listed(texts: Iterable[str], separator: str = ", ") -> str:
+def joined(texts: Iterable[str], separator: str = ", ") -> str:
     """The texts in a row, or "none"."""
     return separator.join(texts) or "none"

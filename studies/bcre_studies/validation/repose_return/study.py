@@ -28,7 +28,7 @@ import pandas as pd
 from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.compare import compare_each
 from bcre_studies.comparison.verdict import Verdict, worst
-from bcre_studies.comparison.wording import listed, sentences, when
+from bcre_studies.comparison.wording import joined, sentences, when
 from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED
 from bcre_studies.observables.outcome import slope, spent
 from bcre_studies.reporting import style
@@ -173,7 +173,7 @@ def _one_pulse_claim(rows: pd.DataFrame) -> Claim:
     differing = rows[rows["verdict"] != Verdict.AGREE]
     only_automaton = (differing.automaton.abs() <= AT_REPOSE) & (differing.pde.abs() > AT_REPOSE)
     gaps = [(rows[column] - rows[f"{column}_theory"]).abs().max() for column in COLUMNS]
-    cases = listed(
+    cases = joined(
         f"{row['S0 - Sc']:g} and pulse {row['pulse']:g} ({row.automaton:.3g} against "
         f"{row.pde:.3g}, effective {row.pde_effective:.3g})"
         for _, row in differing.iterrows()

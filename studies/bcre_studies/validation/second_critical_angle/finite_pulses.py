@@ -13,7 +13,7 @@ from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.compare import Comparison
 from bcre_studies.comparison.rounding import to_error
 from bcre_studies.comparison.verdict import Verdict, verdict_of, worst
-from bcre_studies.comparison.wording import listed, sentences, when
+from bcre_studies.comparison.wording import joined, sentences, when
 from bcre_studies.models.effective import effective
 from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED, EFFECTIVE
 from bcre_studies.observables.outcome import Outcome
@@ -99,7 +99,7 @@ def claims(outcomes: pd.DataFrame, thresholds: pd.DataFrame, sd: Any) -> list[Cl
 def _outcome_claim(rows: pd.DataFrame) -> Claim:
     differing = rows[rows.automaton != rows.pde]
     unresolved = int((rows["verdict"] == Verdict.UNRESOLVED).sum())
-    cases = listed(
+    cases = joined(
         f"{row['S0 - Sc']:g} and pulse {row['pulse']:g} ({row.automaton}/{row.pde}, "
         f"effective {row.pde_effective}, d = 1/4 {row[FINER]})"
         for _, row in differing.iterrows()

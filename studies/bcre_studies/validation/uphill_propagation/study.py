@@ -175,9 +175,9 @@ def _reach_claim(table: pd.DataFrame) -> Claim:
         pd.DataFrame([rolling, surface]),
         sentences(
             f"the edge of R moves downhill by {-rolling.automaton:.1f} in the automaton, "
-            f"{-rolling.pde:.1f} in BCRE and {-rolling.pde_effective:.1f} with D_eff; h changes from "
-            f"{centre.automaton:.1f}, {centre.pde:.1f} and {centre.pde_effective:.1f} above the "
-            f"pulse's centre, whose own edge was {HALF_WIDTH:.1f} above it",
+            f"{-rolling.pde:.1f} in BCRE and {-rolling.pde_effective:.1f} with D_eff; h changes "
+            f"from {centre.automaton:.1f}, {centre.pde:.1f} and {centre.pde_effective:.1f} above "
+            f"the pulse's centre, whose own edge was {HALF_WIDTH:.1f} above it",
             when(
                 (rolling[columns] < 0).all() and (surface[columns] < 0).all(),
                 "all is swept downhill: of the cells above the start only those change on which "
