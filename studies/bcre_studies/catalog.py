@@ -35,6 +35,9 @@ STUDIES = {
     "second_critical_angle": Entry(
         "validation.second_critical_angle.study", "The second critical angle"
     ),
+    "avalanche_extent": Entry(
+        "validation.avalanche_extent", "What an avalanche moves: how much, how far, and when"
+    ),
     "modified_equation": Entry(
         "verification.modified_equation",
         "How much of the difference is the automaton's own diffusion?",

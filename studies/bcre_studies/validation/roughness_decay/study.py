@@ -127,6 +127,7 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     return [
         _surface_claim(long[long["quantity"] == U_DECAY]),
         _rolling_claim(long[long["quantity"] == R_DECAY]),
+        *(_cause_claim(long[long["quantity"] == q], where) for q, where in CAUSES),
         _speed_claim(long[long["quantity"].isin([U_SPEED, R_SPEED])]),
         _short_claim(short),
         _theory_claim(modes),
@@ -174,6 +175,22 @@ def _rolling_claim(rows: pd.DataFrame) -> Claim:
         f"smallest decay rates {rows.automaton.min():.2g} in the automaton and {rows.pde.min():.2g}"
         f" in BCRE; of the automaton's rate D alone leaves out {nominal[CELLS[0]]:.2g} at d = 1 "
         f"and {nominal[CELLS[1]]:.2g} at d = {CELLS[1]:g}, D_eff at most {left.max():.1g}",
+    )
+
+
+CAUSES = ((U_DECAY, "surface"), (R_DECAY, "rolling layer"))
+
+
+def _cause_claim(rows: pd.DataFrame, where: str) -> Claim:
+    """BCRE with kappa = 0 has no other term that could smooth."""
+    share = rows.pde / rows.automaton
+    return Claim(
+        f"diffusion smooths the {where}",
+        f"The diffusion term of the model smooths the {where}.",
+        Verdict.AGREE if (share >= TOLERANCE).all() else Verdict.DISAGREE,
+        f"of the automaton's decay rate BCRE with kappa = 0 has {share.min():.2g} to "
+        f"{share.max():.2g}",
+        f"at least {TOLERANCE:.0%} of the automaton's rate: less would not be seen in it",
     )
 
 
