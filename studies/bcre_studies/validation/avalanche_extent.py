@@ -28,7 +28,7 @@ from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.comparison.wording import sentences, when
 from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED, MODELS
-from bcre_studies.models.run import Run, frame_times, profiles
+from bcre_studies.models.run import Run, frame_times
 from bcre_studies.observables.outcome import slope
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
@@ -80,7 +80,7 @@ def measured(name: str) -> tuple[list[Row], pd.DataFrame]:
         | {"expected": shown(expected.get(quantity, np.nan))}
         for quantity in ASKED[name]
     ]
-    ends = [profiles(_ends(run), case=name, model=run.model) for run in runs.values()]
+    ends = [_ends(run).to_dataframe(case=name) for run in runs.values()]
     return rows, pd.concat(ends)
 
 

@@ -79,7 +79,7 @@ def _profiles(name: str) -> pd.DataFrame:
     scene = figure_scene(name, 1)
     times = frame_times(scene, FRAMES)
     runs = [model.run(scene, times, None if model is AUTOMATON else 400) for model in COMPARED]
-    return pd.concat([profiles(run, figure=name, model=run.model) for run in runs])
+    return pd.concat([run.to_dataframe(figure=name) for run in runs])
 
 
 def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
