@@ -25,7 +25,10 @@ speed: install ## renew the committed record of speed (some minutes, on a quiet 
 	$(BIN)/bcre speed --record
 	$(BIN)/bcre report
 
-test: install ## run the tests
+test: install ## run the tests; those of the page where Chromium is installed
+	@! command -v chromium >/dev/null || $(BIN)/python -c 'import playwright' 2>/dev/null \
+		|| $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --require-hashes -r requirements-browser.lock \
+		|| echo 'Playwright cannot be installed here: the page is not tried in a browser' >&2
 	$(BIN)/python -m pytest
 
 test-cluster: install ## run the sweeps' tests on a Dask scheduler with two workers on this machine
