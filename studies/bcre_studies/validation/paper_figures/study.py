@@ -31,7 +31,7 @@ from bcre_studies.comparison.compare import compare
 from bcre_studies.comparison.verdict import Verdict, worst
 from bcre_studies.models.bcre import SHARE
 from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED, MODELS, SCHEMES
-from bcre_studies.models.run import frame_times, profiles
+from bcre_studies.models.run import frame_times
 from bcre_studies.observables.fronts import climb_time
 from bcre_studies.reporting import style
 from bcre_studies.scenes.scene import load
