@@ -3,10 +3,10 @@ SHELL := /bin/sh
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: help install reports speed test faults bench check lint clean
+.PHONY: help install reports speed test test-cluster faults bench check lint clean
 
 help: ## list the targets
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-9s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-13s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 install: .venv/installed ## create .venv with the locked dependencies
 
@@ -25,8 +25,16 @@ speed: install ## renew the committed record of speed (some minutes, on a quiet 
 	$(BIN)/bcre speed --record
 	$(BIN)/bcre report
 
-test: install ## run the tests
+test: install ## run the tests; those of the page where Chromium is installed
+	@! command -v chromium >/dev/null || $(BIN)/python -c 'import playwright' 2>/dev/null \
+		|| $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --require-hashes -r requirements-browser.lock \
+		|| echo 'Playwright cannot be installed here: the page is not tried in a browser' >&2
 	$(BIN)/python -m pytest
+
+test-cluster: install ## run the sweeps' tests on a Dask scheduler with two workers on this machine
+	@$(BIN)/python -c 'import distributed' 2>/dev/null \
+		|| $(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-cluster.lock
+	$(BIN)/python -m pytest -n 0 -o python_files='cluster_*.py' -o 'pythonpath=tests/robustness tests/cluster' tests/cluster
 
 faults: install ## try every fault again and write reports/quality/faults.csv
 	$(BIN)/python tests/robustness/faults.py

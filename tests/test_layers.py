@@ -10,6 +10,7 @@ from bcre_studies import catalog
 
 LAYERS = (
     "cli",
+    "commands",
     "publishing",
     "catalog",
     "paper_claims",

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import click
 
+from bcre_studies.commands.sweep import sweep
 from bcre_studies.models.registry import BOTH, CHOICES
 from bcre_studies.system.one_line import one_line
 
@@ -16,6 +17,9 @@ from bcre_studies.system.one_line import one_line
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
 def app() -> None:
     """Does a two-layer cellular automaton of sandpiles do what the BCRE equations do?"""
+
+
+app.add_command(sweep)
 
 
 @app.command("list")
@@ -114,9 +118,15 @@ def advise(
     click.echo(answer(question, Path(scene).stem, path))
 
 
+scheduler_option = click.option(
+    "--scheduler", metavar="ADDRESS", help="Dask scheduler, tcp://host:port  [default: all cores]"
+)
+
+
 @app.command("study")
 @click.argument("names", nargs=-1, required=True, metavar="NAME...")
-def run_studies(names: tuple[str, ...]) -> None:
+@scheduler_option
+def run_studies(names: tuple[str, ...], scheduler: str | None) -> None:
     """Run studies (see bcre list), write their reports and print their conclusions."""
     from bcre_studies.catalog import STUDIES
 
@@ -125,19 +135,26 @@ def run_studies(names: tuple[str, ...]) -> None:
             allowed = ", ".join(STUDIES)
             raise click.UsageError(f"NAME = {name!r}: must be one of {allowed}")
     from bcre_studies.publishing.write import write_studies
+    from bcre_studies.sweeps import parallel
 
-    for finding in write_studies(names):
+    with parallel.on(scheduler):
+        findings = write_studies(names)
+    for finding in findings:
         for claim in finding.claims:
             click.echo(f"{finding.name}: {claim.statement} {claim.verdict}: {claim.evidence}.")
 
 
 @app.command()
-def report() -> None:
+@scheduler_option
+def report(scheduler: str | None) -> None:
     """Run all studies and write reports/ with its index."""
     from bcre_studies.publishing.write import write_all
+    from bcre_studies.sweeps import parallel
     from bcre_studies.system.files import REPORTS
 
-    claims = [claim for finding in write_all() for claim in finding.claims]
+    with parallel.on(scheduler):
+        findings = write_all()
+    claims = [claim for finding in findings for claim in finding.claims]
     click.echo(f"{len(claims)} claims judged; read {REPORTS / 'README.md'}")
 
 

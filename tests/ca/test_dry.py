@@ -62,7 +62,7 @@ def test_figure_2_with_the_cut_off_differs_by_no_more_than_that_per_cell_and_ste
 
 def test_pulse_with_a_cut_off_comes_to_rest_and_then_costs_nothing():
     """A thousand million further steps are none where all is dry."""
-    rule = Rule(v=0.5, D=0.0, gamma=0.2, Sc=0.5, d=1.0, dt=0.8, kappa=1e-6, dry=1e-6)
+    rule = Rule(v=0.5, D=0.0, gamma=0.2, Sc=0.5, d=1.0, dt=0.8, kappa=1e-6, v_up=1e9, dry=1e-6)
     x = np.arange(300) + 0.5
     start = Pile(0.3 * (300 - x), np.exp(-(((x - 50) / 4) ** 2)))
     at_rest = advance(start, rule, 2000)

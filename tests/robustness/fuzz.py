@@ -148,7 +148,7 @@ def _file(chance: random.Random) -> Spoilt:
 
 def _title(chance: random.Random) -> Spoilt:
     text = SCENE.replace("A pulse", "".join(chance.sample(TITLES, chance.randint(1, 3))))
-    if chance.random() < 0.5:  # and a value that is told beside it
+    if chance.random() < 0.5:  # and a value beside it
         text = text.replace('"open"', f'"{chance.choice(TITLES)}"')
     return text.encode(), TABLE.encode()
 

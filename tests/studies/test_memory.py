@@ -158,5 +158,5 @@ held = psutil.Process().memory_info().vms
 resource.setrlimit(resource.RLIMIT_AS, (held + 10**8, resource.RLIM_INFINITY))
 print(memory.available())
 """
-    told = subprocess.run([sys.executable, "-c", script], capture_output=True, check=True).stdout
-    assert 0.8e8 < int(told) <= 1e8
+    printed = subprocess.run([sys.executable, "-c", script], capture_output=True, check=True).stdout
+    assert 0.8e8 < int(printed) <= 1e8

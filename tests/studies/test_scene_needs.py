@@ -6,7 +6,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-import bcre_ca
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.automaton import rule_of
 from bcre_studies.models.registry import AUTOMATON
@@ -80,24 +79,6 @@ def test_nonlinearity_left_out_of_a_trace_changes_nothing():
     assert change(scene, "R", "nonlinearity") < 1e-7
     thick = scene.with_changes(**{"rolling.0.amplitude": 5.0})
     assert change(thick, "R", "nonlinearity") > 0.01
-
-
-@pytest.mark.parametrize("ends", ["figure2", "rough_slope"])
-def test_frozen_slope_is_the_rule_for_one_step_and_conserves_mass(ends):
-    scene = load(ends)
-    h, R = scene.initial(scene.centres())
-    rule = rule_of(scene)
-    K = rule.coefficients()
-    periodic = ends == "rough_slope"
-    drop = h - np.append(h[1:], h[0] - SC_FALL if periodic else h[-1] - K.s) - K.s
-    frozen_h, frozen_R = h.copy(), R.copy()
-    ablation.frozen_march(frozen_h, frozen_R, drop, K.c, K.b, K.k, 1, periodic)
-    expected = bcre_ca.evolve(h, R, rule, 1, scene.domain.ends)
-    assert np.allclose(frozen_h, expected[0], rtol=0, atol=1e-13)
-    assert np.allclose(frozen_R, expected[1], rtol=0, atol=1e-13)
-
-
-SC_FALL = 0.5 * 100.0
 
 
 def test_steps_twice_as_long_are_refused():

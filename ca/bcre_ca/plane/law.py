@@ -14,7 +14,7 @@ import numpy as np
 from numba import types
 from numba.extending import overload, register_jitable
 
-from bcre_ca.exchange import exchanging, settle
+from bcre_ca.exchange import deposit_thin, exchanging
 from bcre_ca.plane.coefficients import Coefficients
 
 
@@ -87,5 +87,5 @@ def changed(
     h: Any, R: Any, along: Any, across: Any, erosion: Any, K: Coefficients
 ) -> tuple[Any, Any]:
     """The new h and R of a cell from the net flux into it along and across, and its erosion."""
-    layers: tuple[Any, Any] = settle(h - erosion, R + ((along + across) + erosion), K.dry)
+    layers: tuple[Any, Any] = deposit_thin(h - erosion, R + ((along + across) + erosion), K.dry)
     return layers

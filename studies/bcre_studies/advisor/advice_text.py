@@ -25,7 +25,7 @@ from bcre_studies.timing.costs import recorded
 
 
 def answer(question: Question, scene: str, path: Path) -> str:
-    """Advise with pilots timed on this machine, write the scene that is advised, and tell of both.
+    """Advise with pilots timed on this machine, write the advised scene, and report both.
 
     Parameters
     ----------

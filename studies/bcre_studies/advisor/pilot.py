@@ -132,8 +132,8 @@ def warm_up(scene: Scene, model: str) -> None:
 def sees_start(scene: Scene, cells: int) -> bool:
     """Whether the centres of so many cells see what stands at the start.
 
-    Grids that all miss a narrow pulse agree with each other on nothing. Compared are the total
-    variations of R and of u, with those on the finest grid's sixteenth cells and at every pulse.
+    Grids that all miss a narrow pulse would agree with each other and all be wrong. The total
+    variations of R and u are compared with those on cells sixteen times finer than any pilot's.
     """
     pulses = [term.centre for term in scene.rolling if isinstance(term, Gaussian)]
     every = np.sort(np.concatenate([scene.centres(16 * FINEST), pulses]))

@@ -39,10 +39,10 @@ if TYPE_CHECKING:
 
 PAPERS, *BETTER = (scheme.label for scheme in SCHEMES.values())
 TRUTH_SHARE = 0.1
-"""An error is told only down to where the truth's own is this part of it."""
+"""An error is reported only where the reference's own error is below this part of it."""
 WHY_TIME = (
     "a time is the shortest among the grids measured whose error of R is no more than the one "
-    "asked for; the models are told apart where the ratio of their medians in one run leaves 1"
+    "asked for; two models differ where the ratio of their medians in one run excludes 1"
 )
 
 
@@ -157,13 +157,13 @@ def _where_it_wins(rows: list[dict[str, Any]]) -> str:
 
 def _where_the_pde_wins(rows: list[dict[str, Any]]) -> str:
     lost = [row for row in rows if row["ours"] > row["BCRE"]]
-    told = [row for row in lost if math.isfinite(row["at_least"])]
+    bounded = [row for row in lost if math.isfinite(row["at_least"])]
     never = sorted({row["scene"] for row in lost if math.isinf(row["at_least"])})
     by = ", ".join(
         f"{_percent(target)} by {least:.2g} to {most:.2g} times"
         for target in TARGETS
         for least, most in [
-            _span([r["at_least"] / r["BCRE"] for r in told if r["error"] == target])
+            _span([r["at_least"] / r["BCRE"] for r in bounded if r["error"] == target])
         ]
         if most > 0
     )
@@ -199,13 +199,13 @@ def _percent(target: float) -> str:
 
 
 def _where(rows: list[dict[str, Any]], won: list[dict[str, Any]]) -> str:
-    told = [
+    cases = [
         f"{row['scene']} at {_percent(row['error'])} "
         f"({_ms(row['ours'])} against {_ms(row['BCRE'])})"
         for row in won
     ]
     return f"the automaton is faster in {len(won)} of {len(rows)} cases: " + (
-        ", ".join(told) or "none"
+        ", ".join(cases) or "none"
     )
 
 
@@ -253,7 +253,7 @@ def _improved(seconds: pd.DataFrame) -> Claim:
 
 def _fewer_cell_steps(errors: pd.DataFrame) -> Claim:
     """Down to 1 %, in cell-steps, which are the same on every machine."""
-    told, fewer = [], []
+    lines, fewer = [], []
     for label, group in errors.groupby("scene", sort=False):
         best = {
             name: cheapest(group[group["contender"] == name], 0.01, "cell_steps")
@@ -263,13 +263,13 @@ def _fewer_cell_steps(errors: pd.DataFrame) -> Claim:
         papers, better = least[PAPERS], min(least[name] for name in BETTER)
         fewer.append(better < papers)
         against = "on no grid tried" if math.isinf(papers) else f"against {papers:.2g}"
-        told.append(f"{label}: {better:.2g} {against}")
+        lines.append(f"{label}: {better:.2g} {against}")
     return Claim(
         name="what better rules buy",
         statement="The better of the calibrated and the flux-limited rule reaches 1 % in fewer "
         "cell-steps than the paper's.",
         verdict=Verdict.AGREE if all(fewer) else Verdict.DISAGREE,
-        evidence="; ".join(told),
+        evidence="; ".join(lines),
         tolerance="fewer cell-steps on the cheapest grid of error 1 % or less",
     )
 

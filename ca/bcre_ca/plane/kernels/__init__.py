@@ -7,10 +7,9 @@ lies beyond the ends; ``bounds`` looks for what limits the step; ``storage`` hol
 
 from __future__ import annotations
 
+from bcre_ca.kept import kept
 from bcre_ca.plane.kernels import bounds, facets, march, split4, tilted
-from bcre_ca.plane.kernels.kept import kept
 from bcre_ca.plane.kernels.work import Form
-from bcre_ca.sources import SOURCES
 
 _FACETS = Form(facets.REACH, facets.CARRIED, together=2)
 
@@ -22,7 +21,7 @@ FORMS = {
 }
 
 
-take_steps = kept(march.take_steps, SOURCES)
-extremes = kept(bounds.extremes, SOURCES)
+take_steps = kept(march.take_steps)
+extremes = kept(bounds.extremes)
 
 __all__ = ["FORMS", "extremes", "take_steps"]

@@ -20,7 +20,7 @@ _excesses_of = by_flow({Tilted: tilted.excesses, Split4: split4.excesses, Facets
 def extremes(f, K, cells, steps, w):  # type: ignore[no-untyped-def]
     """Largest R, and largest drop that is missing to repose, of all that the next ``steps`` can
     read; both >= 0, and NaN where a layer is not finite. Compiled by
-    :func:`bcre_ca.plane.kernels.kept.kept`."""
+    :func:`bcre_ca.kept.kept`."""
     windows, carry = w.windows, w.carry[0, 0]
     top, foot = widen(f, w.wet, cells, True, steps, windows)
     largest, missing, unfinished = 0.0, 0.0, 0.0

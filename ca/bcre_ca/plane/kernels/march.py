@@ -163,7 +163,7 @@ def take_steps(part, s, f, K, cells, heights, w):  # type: ignore[no-untyped-def
 
     BEGIN returns the number of slabs, of which SLAB takes one; then WEDGE makes up for what is left
     out at the cut below slab s, and END looks where it is wet now. Compiled by
-    :func:`bcre_ca.plane.kernels.kept.kept`.
+    :func:`bcre_ca.kept.kept`.
     """
     f, cells, w = _borrowed_field(f), _borrowed_cells(cells), _borrowed_work(w)
     if part == WHOLE:

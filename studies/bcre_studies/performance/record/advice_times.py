@@ -24,10 +24,10 @@ from bcre_studies.timing.costs import recorded
 SCENES = 30
 PILOTS_S = 1.0
 FEW = 100
-"""Cells of the finest pilot of the times that are foretold."""
+"""Cells of the finest pilot where times are extrapolated."""
 
 RUNS = 3
-"""The advised model is run so often; the median counts."""
+"""Runs of the advised model; their median counts."""
 
 FACTOR = 2.0
 """A prediction hits if it is right to within this factor."""
@@ -36,8 +36,8 @@ FACTOR = 2.0
 def time_hits() -> pd.DataFrame:
     """Predicted and measured seconds of every option of every scene.
 
-    Once as a user is advised, and once foretold, from pilots of at most :data:`FEW` cells for finer
-    grids than those.
+    Once as a user is advised, and once extrapolated to finer grids from pilots of at most
+    :data:`FEW` cells.
 
     Returns
     -------

@@ -31,11 +31,9 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import Any
 
-import numba
 import numpy as np
 
 import bcre_ca
-from bcre_ca.kernels.driver import BLOCK, SEES
 from bcre_ca.rule import Ends, Scheme
 from bcre_studies.models.automaton import rule_of, run_of
 from bcre_studies.models.registry import HEIGHT_ONLY
@@ -149,7 +147,8 @@ def _stepped(scene: Scene, model: Model) -> Trial:
         else bcre_ca.frames(start, rule, times, ends, changed.time.step)
     )
     steps = sum(
-        (after.steps - before.steps) * _stepped_cells(before.R) for before, after in pairwise(piles)
+        (after.steps - before.steps) * bcre_ca.stepped_cells(before.R)
+        for before, after in pairwise(piles)
     )
     return Trial(run_of(changed, piles), steps, steps * _cost(changed, rule, single))
 
@@ -176,8 +175,8 @@ def _in_single_precision(
         while left > 1e-9 * time and R.any():
             wanted = rule.dt if fixed else bcre_ca.MARGIN * _bound(h, R, rule, ends)
             block = max(math.ceil(left / wanted * (1 - 1e-9)), 1)
-            if block > BLOCK:
-                block, dt = BLOCK, wanted
+            if block > bcre_ca.BLOCK:
+                block, dt = bcre_ca.BLOCK, wanted
             else:
                 dt = left / block
             h, R, dt = _shortened(h, R, replace(rule, dt=dt), block, ends)
@@ -214,45 +213,22 @@ def _on_frozen_slope(scene: Scene, model: Model) -> Trial:
     if changed.automaton.scheme != "upwind":
         raise Refused("the frozen slope stands for the upwind rule only")
     h, R = changed.initial(changed.centres())
-    periodic = changed.domain.ends == "periodic"
-    rule = rule_of(changed)
-    pile = bcre_ca.Pile(h, np.zeros_like(R))  # without a layer no surface wave bounds the step
-    bound = bcre_ca.largest_stable_step(pile, rule, changed.domain.ends)
+    rule, ends = rule_of(changed), changed.domain.ends
     if changed.time.step == "auto":
+        # Without a layer no surface wave bounds the step.
+        bound = bcre_ca.largest_stable_step(bcre_ca.Pile(h, np.zeros_like(R)), rule, ends)
         rule = replace(rule, dt=min(bcre_ca.MARGIN * bound, changed.time.until))
-    rule.require_within(bound, 0.0)
-    K = rule.coefficients()
-    drop = h - np.append(h[1:], h[0] - rule.Sc * changed.domain.length if periodic else h[-1] - K.s)
     piles = [bcre_ca.Pile(h, R)]
     cell_steps = 0.0
     for time in recorded_times(scene)[1:]:
         before = piles[-1]
         steps = math.ceil((time - before.t) / rule.dt * (1 - 1e-9))
-        K = replace(rule, dt=(time - before.t) / steps).coefficients()
+        exact = replace(rule, dt=(time - before.t) / steps)
+        layers = bcre_ca.evolve(before.h, before.R, exact, steps, ends, frozen=h)
         cell_steps += steps * before.R.size
-        h, R = before.h.copy(), before.R.copy()
-        frozen_march(h, R, drop - K.s, K.c, K.b or 0.0, K.k, steps, periodic)
-        piles.append(bcre_ca.Pile(h, R, time, 0.0, before.steps + steps))
+        piles.append(bcre_ca.Pile(*layers, time, 0.0, before.steps + steps))
     cost = cell_steps * _cost(changed, rule, single=False)
     return Trial(run_of(changed, piles), cell_steps, cost)
-
-
-@numba.njit(cache=True, error_model="numpy")
-def frozen_march(h, R, drop, c, b, k, steps, periodic):  # type: ignore[no-untyped-def]
-    """The synchronous upwind rule in place, its exchange R k drop with a drop that stays."""
-    last = h.size - 1
-    for _ in range(steps):
-        first = R[0]
-        flux_in = (c + b) * R[last] - b * first if periodic else 0.0
-        for i in range(h.size):
-            if i < last:
-                flux_out = (c + b) * R[i] - b * R[i + 1]
-            else:
-                flux_out = (c + b) * R[i] - b * first if periodic else c * R[i]
-            exchange = R[i] * (k * drop[i])
-            h[i] -= exchange
-            R[i] += (flux_in - flux_out) + exchange
-            flux_in = flux_out
 
 
 def _of_height_alone(scene: Scene) -> Trial:
@@ -260,15 +236,6 @@ def _of_height_alone(scene: Scene) -> Trial:
     run = HEIGHT_ONLY.run(scene, [0.0, scene.time.until])
     cell_steps = float(run.steps * run.x.size)
     return Trial(run, cell_steps, cell_steps)
-
-
-def _stepped_cells(R: Array) -> int:
-    """Cells that a block of steps from R passes: the wet ones and as many about as it can reach."""
-    wet = np.flatnonzero(R)
-    if wet.size == 0:
-        return 0
-    around = BLOCK + SEES
-    return int(min(wet[-1] + 1 + around, R.size) - max(wet[0] - around, 0))
 
 
 def _cost(scene: Scene, rule: bcre_ca.Rule, single: bool) -> float:

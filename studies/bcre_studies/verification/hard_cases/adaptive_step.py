@@ -8,11 +8,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import pandas as pd
 
 import bcre_ca
-from bcre_ca import kernels
 from bcre_studies.comparison.claim import Claim, quality_check
 from bcre_studies.comparison.difference import relative_difference
 from bcre_studies.comparison.rounding import significant
@@ -65,10 +63,10 @@ def compared(name: str) -> dict[str, Any]:
 
 def _at_half_the_steps(scene: Scene) -> Array:
     """R at the end where every step takes half the share of its bound."""
-    h, R = (np.array(layer) for layer in scene.initial(scene.centres()))
-    margin, blocks = bcre_ca.MARGIN / 2, 10**9
-    kernels.follow(h, R, rule_of(scene), scene.time.until, blocks, margin, scene.domain.ends)
-    return R
+    start, rule = bcre_ca.Pile(*scene.initial(scene.centres())), rule_of(scene)
+    until, ends = scene.time.until, scene.domain.ends
+    (end,) = bcre_ca.frames(start, rule, [until], ends, margin=bcre_ca.MARGIN / 2)
+    return end.R
 
 
 def claim(table: pd.DataFrame) -> Claim:

@@ -14,7 +14,6 @@ from functools import cache
 import numpy as np
 
 import bcre_ca
-from bcre_ca import kernels
 from bcre_pde import Material
 from bcre_pde.explicit import ExplicitMethod
 from bcre_pde.fixed_step import take_fixed_steps
@@ -52,7 +51,7 @@ def automaton_grows(numbers: Numbers, variant: Variant) -> bool:
     h, R = u.copy(), steady + disturbance
 
     def deviation() -> float:
-        kernels.march(h, R, rule, STEPS // 2, "periodic")
+        bcre_ca.march(h, R, rule, STEPS // 2, "periodic")
         return _largest(h, R - steady)
 
     with np.errstate(all="ignore"):
@@ -66,7 +65,7 @@ def _steady_layer(rule: bcre_ca.Rule, cells: int) -> Array:
     between two sweeps, or one less: f = c/(1 - q) downhill, c/(1 - b) uphill.
     """
     folded = rule.coefficients()
-    c, b, q = folded.c, folded.b or 0.0, folded.q
+    c, b, q = folded.courant, folded.diffusion or 0.0, folded.outgoing
     layer = np.ones(cells)
     if rule.order == "right" and q < 1:
         layer[0] += c / (1 - q)

@@ -35,7 +35,6 @@ from scipy.optimize import bisect
 
 import bcre_ca
 import bcre_pde
-from bcre_ca import kernels
 from bcre_pde import Method, theory
 from bcre_pde.explicit import ExplicitMethod
 from bcre_studies.comparison.claim import Claim, quality_check
@@ -251,7 +250,7 @@ def _positivity(variant: Variant) -> Row:
 
         def stays(numbers: Numbers) -> bool:
             h, R = np.zeros_like(start), start.copy()
-            kernels.march(h, R, rule_with(numbers, variant), 1, "periodic")
+            bcre_ca.march(h, R, rule_with(numbers, variant), 1, "periodic")
             return bool(R.min() >= 0)
 
         ratios.append(_last(stays, ray.times(bound), 0.5, 4.0))
