@@ -18,6 +18,7 @@ LAYERS = (
     "verification",
     "performance",
     "reporting",
+    "on_plane",
     "advisor",
     "running",
     "sweeps",

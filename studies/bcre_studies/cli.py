@@ -26,10 +26,10 @@ app.add_command(sweep)
 def list_all() -> None:
     """List the built-in scenes and the studies."""
     from bcre_studies.catalog import STUDIES
-    from bcre_studies.scenes.listing import built_in_names, built_in_title
+    from bcre_studies.scenes.listing import built_in_title, line_and_plane_names
 
     click.echo("Scenes (bcre run SCENE):")
-    for name in built_in_names():
+    for name in line_and_plane_names():
         click.echo(f"  {name:24}{built_in_title(name)}")
     click.echo("Studies (bcre study NAME):")
     for name, entry in STUDIES.items():
@@ -38,7 +38,11 @@ def list_all() -> None:
 
 @app.command()
 @click.argument("scene")
-@click.option("--model", type=click.Choice(CHOICES), default=BOTH, show_default=True)
+@click.option(
+    "--model",
+    type=click.Choice(CHOICES),
+    help=f"[default: {BOTH}; on a plane ca]",
+)
 @click.option(
     "--set",
     "assignments",
@@ -56,18 +60,31 @@ def list_all() -> None:
 @click.option(
     "--out", type=click.Path(file_okay=False, path_type=Path), help="Folder  [default: out/SCENE]"
 )
+@click.option("--animate", is_flag=True, help="Write animation.gif too, of a scene on a plane.")
 def run(
     scene: str,
-    model: str,
+    model: str | None,
     assignments: tuple[str, ...],
     frames: int,
     out: Path | None,
+    animate: bool,
 ) -> None:
-    """Run SCENE, a built-in name or a TOML file; write profiles.csv and summary.json."""
+    """Run SCENE, a built-in name or a TOML file; write profiles.csv and summary.json.
+
+    On a plane: frames.nc, summary.json and picture.png.
+    """
+    from bcre_studies.on_plane import command as plane
     from bcre_studies.scenes.scene import load
     from bcre_studies.system.files import require_writable
 
     folder = Path("out") / Path(scene).stem if out is None else out
+    if plane.takes(scene):
+        for line in plane.run(scene, assignments, model, frames, folder, animate):
+            click.echo(line)
+        return
+    if animate:
+        raise click.UsageError("--animate: must be left out for a scene on a line")
+    model = model or BOTH
     require_writable("--out", folder, ("profiles.csv", "summary.json"))
     loaded = load(scene, assignments)  # what is refused here need not wait for the solvers
     from bcre_studies.running.run import notes, run_scene, write_run

@@ -35,21 +35,21 @@ class PlaneDomain(StrictTable):
     def _cells_across(cls, data: Any) -> Any:
         if not isinstance(data, dict):
             return data
-        length, cells, width = (data.get(key) for key in ("length", "cells", "width"))
-        numbers = (length, cells, width)
+        numbers: list[Any] = [data.get(key) for key in ("length", "cells", "width")]
         if "cells_across" in data or not all(
             isinstance(number, int | float) and 0 < number < 1e300 for number in numbers
         ):
             return data
-        across = float(width) / float(length) * float(cells)
-        return data | {"cells_across": max(round(min(across, 2.0 * MOST_CELLS)), 1)}
+        length, cells, width = map(float, numbers)
+        across = min(width / length * cells, 2.0 * MOST_CELLS)
+        return data | {"cells_across": max(round(across), 1)}
 
     @model_validator(mode="after")
     def _holds_squares(self) -> Self:
         if abs(self.width / self.d - self.cells_across) > 1e-6:
             raise ValueError(
-                f"domain.cells_across = {self.cells_across!r}: must make square cells, "
-                f"domain.width/d = {self.width / self.d:.9g} with d = {self.d:.6g}"
+                f"domain.width = {self.width!r}: must be that of domain.cells_across = "
+                f"{self.cells_across!r} square cells of side {self.d:.6g}"
             )
         if self.cells * self.cells_across > MOST_CELLS:
             raise ValueError(
