@@ -3,7 +3,7 @@ SHELL := /bin/sh
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: help install reports speed test test-cluster faults bench check lint clean
+.PHONY: help install reports speed test test-cluster docs faults bench check lint clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-13s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -36,6 +36,11 @@ test-cluster: install ## run the sweeps' tests on a Dask scheduler with two work
 		|| $(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-cluster.lock
 	$(BIN)/python -m pytest -n 0 -o python_files='cluster_*.py' -o 'pythonpath=tests/robustness tests/cluster' tests/cluster
 
+docs: install ## build the documentation, docs/_build/index.html; a warning is an error
+	@$(BIN)/python -c 'import furo, myst_parser, sphinx' 2>/dev/null \
+		|| $(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-docs.lock
+	$(BIN)/python -m sphinx -b html -q -W --keep-going docs docs/_build
+
 faults: install ## try every fault again and write reports/quality/faults.csv
 	$(BIN)/python tests/robustness/faults.py
 
@@ -54,5 +59,5 @@ lint: install ## ruff and mypy
 	$(BIN)/mypy
 
 clean: ## remove the environment, caches and everything that is built
-	rm -rf .venv .cache .mypy_cache .pytest_cache .ruff_cache .hypothesis out reports/local
+	rm -rf .venv .cache .mypy_cache .pytest_cache .ruff_cache .hypothesis docs/_build out reports/local
 	find ca pde studies tests -name __pycache__ -type d -prune -exec rm -rf {} +

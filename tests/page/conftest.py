@@ -78,7 +78,10 @@ def open_page(browser):
 
 @pytest.fixture(scope="session")
 def shown(browser):
-    """A page that was scrolled through; opened once for all tests that only look at it."""
+    """A page that was scrolled through, opened once for all tests that leave it as it was.
+
+    What a test moves on it, another one sets before it looks.
+    """
     pages = {}
 
     def shown(name="index.html"):

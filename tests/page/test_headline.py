@@ -8,8 +8,9 @@ import pytest
 
 from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.publishing.answers import answers, certainty, short_answer
 from bcre_studies.publishing.deciding import NUMBERS, deciding_number
-from bcre_studies.publishing.headline import answers, certainty, headline, short_answer
+from bcre_studies.publishing.headline import headline
 from bcre_studies.publishing.stories import STORIES, story_of
 from bcre_studies.publishing.wording import number, percent, span
 from bcre_studies.reporting.page.mathml import formula

@@ -10,7 +10,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bcre_studies.scenes.toml_file import SceneError, is_on_plane, read
+from bcre_studies.running.place import (
+    SUMMARY,
+    Origin,
+    require_apart,
+    require_own,
+    scenes_of,
+)
+from bcre_studies.scenes.refusal import SceneError
+from bcre_studies.scenes.toml_file import is_on_plane, read
 from bcre_studies.system import memory
 from bcre_studies.system.files import replace_bytes, replace_file, replace_text, require_writable
 
@@ -18,7 +26,9 @@ if TYPE_CHECKING:
     from bcre_studies.models.plane.run import PlaneRun
     from bcre_studies.scenes.plane.scene import PlaneScene
 
-FRAMES, SUMMARY, PICTURE, ANIMATION = "frames.nc", "summary.json", "picture.png", "animation.gif"
+FRAMES, PICTURE, ANIMATION = "frames.nc", "picture.png", "animation.gif"
+FILES = FRAMES, SUMMARY, PICTURE, ANIMATION
+"""What a run writes, the last only where asked for."""
 
 FRAME_BYTES = 40
 """Memory that a frame takes a cell and model: both layers, and copies of them on the way."""
@@ -32,11 +42,11 @@ def takes(source: str) -> bool:
 
 
 def run(
-    source: str,
-    assignments: Sequence[str],
+    origin: Origin,
     choice: str | None,
     frames: int,
     folder: Path,
+    is_own_folder: bool,
     animate: bool,
 ) -> Iterator[str]:
     """Run the scene, write its files into ``folder``, and say line by line what was done.
@@ -45,6 +55,7 @@ def run(
     ----------
     choice: ``"ca"``, ``"pde"`` or ``"both"``; left out, the automaton, because BCRE takes minutes.
     frames: from t = 0 to the end.
+    is_own_folder: nobody asked for the folder, so that it must not hold another scene's results.
 
     Raises
     ------
@@ -56,13 +67,16 @@ def run(
     names = {None: ("ca",), "both": MODELS}.get(choice, (choice,))
     if not set(names) <= set(MODELS):
         raise ValueError(f"--model = {choice!r}: must be 'ca', 'pde' or 'both' on a plane")
-    require_writable("--out", folder, (FRAMES, SUMMARY, PICTURE, ANIMATION))
-    scene = load(source, assignments)
+    require_writable("--out", folder, FILES)
+    scene = load(origin.scene, origin.changes)
+    require_apart("--out", [folder / name for name in FILES], origin.inputs(scene))
+    if is_own_folder:
+        require_own(folder / SUMMARY, scenes_of(folder / SUMMARY), origin)
     with failures_name_their_key(scene):
         _require_memory(scene, frames, len(names))
         times = [float(t) for t in np.linspace(0.0, scene.time.until, frames)]
         runs = _runs(scene, names, times)
-    yield from write(runs, folder, animate)
+    yield from write(runs, folder, origin, animate)
 
 
 def _runs(scene: PlaneScene, names: Sequence[str | None], times: list[float]) -> list[PlaneRun]:
@@ -76,11 +90,11 @@ def _runs(scene: PlaneScene, names: Sequence[str | None], times: list[float]) ->
     return [automaton.run(scene, times)] * ("ca" in names) + [bcre.run(scene, times)]
 
 
-def write(runs: Sequence[PlaneRun], folder: Path, animate: bool) -> Iterator[str]:
+def write(runs: Sequence[PlaneRun], folder: Path, origin: Origin, animate: bool) -> Iterator[str]:
     """Write the files of these runs of one scene; say what is in them."""
     from bcre_studies.on_plane import netcdf, picture
 
-    summary = {run.model: run.summary() for run in runs}
+    summary = {run.model: run.summary() | origin.record(run.scene, folder) for run in runs}
     replace_bytes(folder / FRAMES, netcdf.content(runs))
     replace_text(folder / SUMMARY, json.dumps(summary, indent=2) + "\n")
     written = [FRAMES, SUMMARY, PICTURE]

@@ -14,10 +14,11 @@ from typing import Any, Protocol
 import bcre_ca
 from bcre_studies.comparison.claim import Claim
 from bcre_studies.paper_claims import PaperClaim
+from bcre_studies.publishing.answers import answers, certainty, short_answer
 from bcre_studies.publishing.deciding import deciding_number
 from bcre_studies.publishing.film import FRAMES, films
 from bcre_studies.publishing.finding import Finding
-from bcre_studies.publishing.headline import answers, certainty, headline, short_answer
+from bcre_studies.publishing.headline import headline
 from bcre_studies.publishing.live_scenes import PRESETS, SLIDERS
 from bcre_studies.publishing.picture_views import picture_views
 from bcre_studies.publishing.provenance import provenance

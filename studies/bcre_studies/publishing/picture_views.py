@@ -9,8 +9,11 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
-from bcre_studies.publishing import pictures
 from bcre_studies.publishing.live_scenes import slope_and_pulse
+from bcre_studies.publishing.pictures import space_time
+from bcre_studies.publishing.pictures.answer import answer
+from bcre_studies.publishing.pictures.phase_diagram import phase_diagram
+from bcre_studies.publishing.pictures.shares import shares
 from bcre_studies.publishing.wording import number, percent
 from bcre_studies.reporting.page.picture import Picture
 from bcre_studies.scenes.scene import load
@@ -22,7 +25,7 @@ def picture_views(tables: Mapping[str, Tables]) -> list[dict[str, Any]]:
     """The picture of the answer, and the three."""
     profiles = tables["paper_figures"]["comparison"]
     gap = profiles[(profiles["case"] == "figure2") & (profiles["d"] == 1.0)].iloc[0]
-    seen = pictures.measure_space_time()
+    seen = space_time.measure()
     scene = load("figure1")
     slope, pulse = slope_and_pulse(scene)
     paper = pulse.amplitude, slope - scene.material.Sc
@@ -31,7 +34,7 @@ def picture_views(tables: Mapping[str, Tables]) -> list[dict[str, Any]]:
         _view(
             "answer",
             "Figure 2’s pulse in both models",
-            pictures.answer(tables["paper_figures"]["profiles"]),
+            answer(tables["paper_figures"]["profiles"]),
             "Rolling layer over distance downhill: a pulse at the start, and at the end a high and "
             "narrow one in BCRE, a low and broad one in the automaton, which BCRE with the cells’ "
             "own diffusion covers.",
@@ -42,7 +45,7 @@ def picture_views(tables: Mapping[str, Tables]) -> list[dict[str, Any]]:
         _view(
             "space_time",
             "Figure 1 in space and time",
-            pictures.space_time(seen),
+            space_time.draw(seen),
             "Three maps over distance and time: the rolling layer in the automaton, in BCRE, and "
             "their difference. The avalanche grows at the foot and then climbs; BCRE’s is ahead.",
             "The rolling layer of figure 1. Time runs upwards, and the edge on the left is the "
@@ -51,7 +54,7 @@ def picture_views(tables: Mapping[str, Tables]) -> list[dict[str, Any]]:
             + (
                 f"From t = {number(seen.resolved_until)} on, hatched, BCRE’s own error is no "
                 "longer small against it."
-                if seen.resolved_until < pictures.UNTIL
+                if seen.resolved_until < space_time.UNTIL
                 else "BCRE is resolved all along."
             ),
             steps=_steps(),
@@ -59,7 +62,7 @@ def picture_views(tables: Mapping[str, Tables]) -> list[dict[str, Any]]:
         _view(
             "phase_diagram",
             "Which pulse brings down which slope",
-            pictures.phase_diagram(tables["second_critical_angle"]["comparison"], paper),
+            phase_diagram(tables["second_critical_angle"]["comparison"], paper),
             "Amplitude of a pulse against slope, with the slope from which on the pulse climbs to "
             "the top: lowest in the automaton with d = 1, higher with d = 1/4, highest in BCRE.",
             "A pulse at the foot of a slope, figure 1’s material. Above a line it climbs to the "
@@ -70,7 +73,7 @@ def picture_views(tables: Mapping[str, Tables]) -> list[dict[str, Any]]:
         _view(
             "shares",
             "How much of the difference is cell size",
-            pictures.shares(tables["modified_equation"]["comparison"]),
+            shares(tables["modified_equation"]["comparison"]),
             "For seven scenes and three cell lengths the difference of the rolling layer from "
             "BCRE, and what is left of it once the cells’ diffusion and curvature are counted.",
             "Squares: automaton from BCRE as it stands. Triangles: from BCRE with D_eff and κ_eff. "
@@ -99,7 +102,7 @@ def _view(
 
 def _steps() -> list[dict[str, str]]:
     """The colours of the rolling layer, by their lower ends."""
-    levels = pictures.R_LEVELS[:-1]
+    levels = space_time.R_LEVELS[:-1]
     return [
         {"colour": f"var(--r{place})", "label": f"R > {level:g}"}
         for place, level in enumerate(levels, start=1)

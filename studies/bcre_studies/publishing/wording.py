@@ -44,6 +44,12 @@ def span(values: Sequence[float], digits: int = 2) -> str:
     return low if low == high else f"{low} to {high}"
 
 
+def span_of(values: pd.Series) -> str:
+    """``39 % to 53 %`` of a column of shares."""
+    low, high = percent(float(values.min())), percent(float(values.max()))
+    return low if low == high else f"{low.removesuffix(PERCENT)} to {high}"
+
+
 def listed(items: Sequence[str]) -> str:
     """``a, b and c``."""
     return " and ".join([", ".join(items[:-1]), items[-1]] if len(items) > 1 else items)

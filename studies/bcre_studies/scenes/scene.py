@@ -15,6 +15,8 @@ import numpy as np
 from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
 from bcre_studies.scenes.domain import Array, Domain, NonNegative, Positive, StrictTable
+from bcre_studies.scenes.refusal import SceneError as SceneError
+from bcre_studies.scenes.refusal import first_of, kinds_of, refuse_long_integers
 from bcre_studies.scenes.tables import ProfileError
 from bcre_studies.scenes.terms import (
     RollingTerm,
@@ -23,15 +25,7 @@ from bcre_studies.scenes.terms import (
     TableRolling,
     TableSurface,
 )
-from bcre_studies.scenes.toml_file import SceneError as SceneError
-from bcre_studies.scenes.toml_file import (
-    assign,
-    first_of,
-    is_on_plane,
-    kinds_of,
-    read,
-    refuse_long_integers,
-)
+from bcre_studies.scenes.toml_file import assign, is_on_plane, read
 from bcre_studies.system.memory import NotEnoughMemoryError
 
 
@@ -130,6 +124,24 @@ class Scene(StrictTable):
         """Cell centres of the automaton, or of another grid on the same domain."""
         return self.domain.centres(cells)
 
+    def require_held(self, cells: int, key: str = "domain.cells") -> None:
+        """Refuse a grid that cannot hold the initial profile; see :mod:`bcre_studies.scenes.held`.
+
+        Raises
+        ------
+        SceneError
+            naming the term, and ``key`` as what asks for so many cells.
+        """
+        for layer, terms in (("surface", self.surface), ("rolling", self.rolling)):
+            for index, term in enumerate(terms):
+                if why := term.beyond(self.domain, cells):
+                    raise SceneError(f"{layer}.{index}.{why} ({key} = {cells})")
+
+    def holds(self, cells: int) -> bool:
+        """Whether so many cells can hold the initial profile."""
+        parts = (*self.surface, *self.rolling)
+        return not any(term.beyond(self.domain, cells) for term in parts)
+
     def initial(self, x: Array) -> tuple[Array, Array]:
         """h and R at positions x at t = 0, the same functions for every grid and model."""
         h, R = np.zeros_like(x), np.zeros_like(x)
@@ -138,6 +150,11 @@ class Scene(StrictTable):
         for rolling in self.rolling:
             R += rolling.layer(x, self.domain)
         return h, R
+
+    def tables(self) -> list[Path]:
+        """The CSV files that its profiles come from."""
+        terms = (*self.surface, *self.rolling)
+        return [self._folder / term.file for term in terms if term.kind == "table"]
 
     def with_changes(self, **changes: Any) -> Scene:
         """A copy with values replaced: ``with_changes(v=0.2, **{"rolling.0.width": 1.0})``."""
@@ -151,6 +168,13 @@ def load(source: str | Path, overrides: Sequence[str] = ()) -> Scene:
     ------
     SceneError
         where the scene is not to be found or not allowed.
+
+    >>> scene = load("figure2", overrides=["D=0.2"])
+    >>> scene.material.v, scene.material.D, scene.d
+    (2.5, 0.2, 1.0)
+    >>> load("figure2", overrides=["D=-1"])
+    Traceback (most recent call last):
+    bcre_studies.scenes.scene.SceneError: material.D = -1: must be greater than or equal to 0
     """
     data, folder = read(source, overrides, SECTIONS)
     if is_on_plane(data):
@@ -189,6 +213,9 @@ def _validated(data: dict[str, Any], folder: Path) -> Scene:
     try:
         with np.errstate(over="raise", divide="raise", invalid="raise"):
             _load_tables(scene)
+            scene.require_held(scene.domain.cells)
+            if scene.solver.cells is not None:
+                scene.require_held(scene.solver.cells, "solver.cells")
     except (ProfileError, NotEnoughMemoryError) as failure:
         raise SceneError(str(failure)) from None
     except FloatingPointError as failure:

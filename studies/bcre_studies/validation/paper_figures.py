@@ -34,7 +34,7 @@ from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.effective import effective
 from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED, MODELS
-from bcre_studies.models.run import Run, frame_times, profiles
+from bcre_studies.models.run import Run, frame_times
 from bcre_studies.observables.fronts import scarps
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
@@ -151,7 +151,7 @@ def _profiles(name: str) -> pd.DataFrame:
     scene = figure_scene(name, 1)
     times = frame_times(scene, FRAMES)
     runs = [model.run(scene, times, None if model is AUTOMATON else 400) for model in COMPARED]
-    return pd.concat([profiles(run, figure=name, model=run.model) for run in runs])
+    return pd.concat([run.to_dataframe(figure=name) for run in runs])
 
 
 def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bcre_studies.scenes.plane.scene import load
-from bcre_studies.scenes.toml_file import SceneError
+from bcre_studies.scenes.refusal import SceneError
 
 SCENE = """
 title = "A terrain"

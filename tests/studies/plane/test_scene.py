@@ -8,7 +8,7 @@ import pytest
 from bcre_studies.scenes import scene as line
 from bcre_studies.scenes.listing import built_in_names, plane_names
 from bcre_studies.scenes.plane.scene import load
-from bcre_studies.scenes.toml_file import SceneError
+from bcre_studies.scenes.refusal import SceneError
 
 SCENE = """
 title = "A pulse"

@@ -13,7 +13,7 @@ from bcre_ca.plane.theory import max_stable_step
 from bcre_studies.models.plane.run import PlaneRun
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.plane.scene import PlaneScene
-from bcre_studies.scenes.toml_file import SceneError
+from bcre_studies.scenes.refusal import SceneError
 
 MOST_CELL_STEPS = 1e13
 """A run that would take more is refused: it would not end within hours."""

@@ -12,7 +12,7 @@ from bcre_pde.plane import Material, Problem, solve
 from bcre_studies.models.plane.run import PlaneRun
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.plane.scene import PlaneScene
-from bcre_studies.scenes.toml_file import SceneError
+from bcre_studies.scenes.refusal import SceneError
 
 
 def run(scene: PlaneScene, times: Sequence[float], threads: int = 1) -> PlaneRun:

@@ -263,8 +263,13 @@ def _front(x: Array, R: Array) -> float:
 def rungs(
     contender: Contender, scene: Scene, most: float | None = None
 ) -> Iterator[tuple[int, Solve, EndState]]:
-    """Ever finer grids with what the contender made of them, up to ``most`` cell-steps."""
+    """Ever finer grids with what the contender made of them, up to ``most`` cell-steps.
+
+    They begin with the first that can hold the start of the scene.
+    """
     cells, most = contender.coarsest, min(contender.most, most or contender.most)
+    while not scene.holds(cells):
+        cells *= contender.finer
     while True:
         solve = contender.prepare(scene, cells)
         end = solve()

@@ -20,7 +20,21 @@ GREEK = {
     "Gamma": "Γ",
     "pi": "π",
 }
-UPRIGHT = {"min", "max", "ln", "exp", "sin", "cos", "cot", "tan", "eff", "true", "exact", "full"}
+UPRIGHT = {
+    "Pe",
+    "min",
+    "max",
+    "ln",
+    "exp",
+    "sin",
+    "cos",
+    "cot",
+    "tan",
+    "eff",
+    "true",
+    "exact",
+    "full",
+}
 SIGNS = {"-": "−", "<=": "≤", ">=": "≥", "->": "→", "*": "·", "~": "∼", "+-": "±"}
 
 _TOKEN = re.compile(r"\s*(\d+(?:\.\d+)?|[^\W\d_]+\d*|<=|>=|->|\+-|\S)")
@@ -97,9 +111,9 @@ def _name(token: str) -> str:
         return f'<mi mathvariant="normal">{token}</mi>'
     if re.fullmatch("d[a-z]", token):  # a step or a difference: two letters, not one name
         return f'<mspace width="0.17em"/><mi>d</mi><mi>{token[1]}</mi>'
-    index = re.fullmatch(r"([A-Z])([a-z0-9])", token)
+    index = re.fullmatch(r"([A-Z])([a-z])|([A-Za-z])(\d)", token)
     if index:
-        letter, low = index.groups()
+        letter, low = filter(None, index.groups())
         kind = "mn" if low.isdigit() else "mi"
         return f"<msub><mi>{letter}</mi><{kind}>{low}</{kind}></msub>"
     return f"<mi>{token}</mi>"

@@ -34,6 +34,12 @@ class Size(NamedTuple):
     cellsize: float | None = None
 
 
+def place_of(folder: Path, file: str) -> Path:
+    """Beside the scene file, or else from the current folder."""
+    beside = folder / file
+    return beside if beside.is_file() else Path(file)
+
+
 class GridFile:
     """A file with heights of cells.
 
@@ -54,8 +60,7 @@ class GridFile:
         self._ascii = Path(file).suffix.lower() == ".asc"
         if not self._ascii and Path(file).suffix.lower() != ".npy":
             raise self.refuse("must be an ESRI ASCII grid (.asc) or a NumPy array (.npy)")
-        beside = folder / file
-        self._path = beside if beside.is_file() else Path(file)
+        self._path = place_of(folder, file)
         if not self._path.is_file():
             raise self.refuse("no such file, beside the scene file or in the current folder")
 

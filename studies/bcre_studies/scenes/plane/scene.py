@@ -14,18 +14,12 @@ from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
 from bcre_studies.scenes.domain import Array, NonNegative, Positive, StrictTable
 from bcre_studies.scenes.plane.domain import PlaneDomain
-from bcre_studies.scenes.plane.grids import GridFile
+from bcre_studies.scenes.plane.grids import GridFile, place_of
 from bcre_studies.scenes.plane.objects import Base, Mask, Source, Wall
 from bcre_studies.scenes.plane.terms import Incline, RollingTerm, SurfaceTerm, Table
+from bcre_studies.scenes.refusal import SceneError, first_of, kinds_of, refuse_long_integers
 from bcre_studies.scenes.tables import ProfileError
-from bcre_studies.scenes.toml_file import (
-    SceneError,
-    assign,
-    first_of,
-    kinds_of,
-    read,
-    refuse_long_integers,
-)
+from bcre_studies.scenes.toml_file import assign, read
 from bcre_studies.system.memory import NotEnoughMemoryError
 
 
@@ -126,6 +120,11 @@ class PlaneScene(StrictTable):
         for wall in self.wall:
             covered |= wall.covers(at)
         return covered
+
+    def tables(self) -> list[Path]:
+        """The files that its surface comes from."""
+        files = [term.file for term in self.surface if isinstance(term, Table)]
+        return [place_of(self._folder, file) for file in files]
 
     def with_changes(self, **changes: Any) -> PlaneScene:
         """A copy with values replaced: ``with_changes(v=0.2, **{"rolling.0.width": 1.0})``."""
