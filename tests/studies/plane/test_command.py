@@ -1,6 +1,7 @@
 """``bcre run`` for a scene on a plane: its files, and that nothing is written for a bad one."""
 
 import json
+import re
 import sys
 
 import numpy as np
@@ -11,6 +12,7 @@ from bcre_ca.plane import Sand, frames
 from bcre_studies import cli
 from bcre_studies.models.plane.automaton import plane_of
 from bcre_studies.scenes.plane.scene import load
+from bcre_studies.system.files import ROOT
 
 SCENE = """
 title = "A pulse on a layer"
@@ -114,6 +116,23 @@ def test_frames_are_those_of_the_automaton_to_the_bit(bcre, tmp_path):
             assert np.array_equal(found.h[index].T, sand.h)
             assert np.array_equal(found.R[index].T, sand.R)
         assert np.array_equal(found.wall.T, scene.walls())
+
+
+def test_terrain_of_a_user_runs_from_the_line_of_the_readme(tmp_path, monkeypatch, capsys):
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    (line,) = re.findall(r"^\.venv/bin/(bcre .*my_terrain\.asc)", readme, flags=re.MULTILINE)
+    x, y = np.meshgrid(np.arange(200.0), np.arange(300.0), indexing="ij")
+    heights = 60 - 0.3 * x + 5 * np.sin(x / 9) * np.cos(y / 14)
+    head = "ncols 300\nnrows 200\nxllcorner 0\nyllcorner 0\ncellsize 2\nNODATA_value -9999"
+    np.savetxt(tmp_path / "my_terrain.asc", heights, "%.3f", header=head, comments="")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "argv", line.split())
+    cli.main()
+    assert "mass_error" in capsys.readouterr().out
+    with xr.open_dataset(tmp_path / "out" / "terrain" / "frames.nc") as found:
+        assert dict(found.sizes) == {"t": 11, "y": 300, "x": 200}
+        assert found.h[0].T.values == pytest.approx(heights, abs=1e-3)
+        assert found.x[-1] == 399.0
 
 
 def test_summary_accounts_for_the_mass(bcre, tmp_path):
