@@ -99,6 +99,69 @@ def _profiles(tables: Tables) -> str:
     )
 
 
+def _other_sd(tables: Tables) -> str:
+    rows = of(tables["comparison"], quantity="Sd - Sc", case="other materials")
+    left = [percent(float(gap)) for gap in rows["difference_effective"]]
+    return f"Sd with cell size counted: {', '.join(left)} off at three cell Peclet numbers"
+
+
+def _rolling_roughness(tables: Tables) -> str:
+    rows = of(tables["comparison"], quantity="decay rate of R", d=1.0)
+    row = rows.iloc[(rows["k"] - 0.5).abs().argmin()]
+    return (
+        f"decay rate of the rolling layer at k = {row['k']:.1g}: "
+        f"{number(float(row['automaton']), 2)} against {number(float(row[BCRE.column]), 2)} in BCRE"
+    )
+
+
+def _cells(tables: Tables) -> str:
+    rows = of(tables["comparison"], quantity="R(x)", case="figure2")
+    coarse, fine = (float(rows.loc[rows["d"] == d, "difference"].iloc[0]) for d in (1.0, 0.25))
+    return (
+        f"figure 2’s rolling layer: {percent(coarse)} from BCRE with d = 1, {percent(fine)} "
+        "with d = 1/4"
+    )
+
+
+def _in_both(tables: Tables, case: str, quantity: str) -> tuple[float, float]:
+    row = of(tables["comparison"], case=case, quantity=quantity).iloc[0]
+    return float(row[AUTOMATON.column]), float(row[BCRE.column])
+
+
+def _left(tables: Tables) -> str:
+    own, bcre = _in_both(tables, "figure1", "left")
+    return f"left of the static layer: {percent(own)}, in BCRE {percent(bcre)}"
+
+
+def _grown(tables: Tables) -> str:
+    own, bcre = _in_both(tables, "figure1", "grown")
+    return f"part of the slope on which it grows: {percent(own)}, in BCRE {percent(bcre)}"
+
+
+def _even(tables: Tables) -> str:
+    own, bcre = _in_both(tables, "figure1", "even")
+    return f"slope from cell to cell off Sc by at most {number(own, 1)}, in BCRE {number(bcre, 1)}"
+
+
+def _below(tables: Tables) -> str:
+    own, bcre = _in_both(tables, "figure2", "rolling")
+    return f"most rolling sand over that released: {number(own, 3)}, in BCRE {number(bcre, 3)}"
+
+
+def _spread(tables: Tables) -> str:
+    (far, _), (wide, bcre) = (_in_both(tables, "figure2", q) for q in ("travelled", "spread"))
+    return (
+        f"figure 2’s pulse travels {number(far, 3)} and widens by {number(wide, 2)}, in BCRE by "
+        f"{number(bcre, 2)}"
+    )
+
+
+def _literal(tables: Tables) -> str:
+    rows = of(tables["comparison"], step="literal", figure="figure2", order="synchronous")
+    factor = float(rows["amplification"].iloc[0])
+    return f"with v = 2.5 and d = dt = 1 the shortest wave grows {number(factor, 2)}-fold a step"
+
+
 def _efficiency(tables: Tables) -> str:
     reach = tables.get("recorded_reach")
     if reach is None:
@@ -123,13 +186,23 @@ def _interactive(tables: Tables) -> str:
 NUMBERS: dict[Key, Callable[[Tables], str]] = {
     ("repose_return", "first property as printed"): _returned,
     ("roughness_decay", "roughness of the surface, long waves"): _roughness,
+    ("roughness_decay", "diffusion smooths the surface"): _roughness,
+    ("roughness_decay", "diffusion smooths the rolling layer"): _rolling_roughness,
     ("uphill_propagation", "rolling front"): _uphill,
     ("uphill_propagation", "surface wave"): _wave,
-    ("second_critical_angle", "second critical slope"): _sd,
+    ("second_critical_angle", "second critical slope, figure 1"): _sd,
+    ("second_critical_angle", "second critical slope, other materials"): _other_sd,
     ("one_variable", "return to repose"): _one_variable,
     ("one_variable", "second critical angle"): _one_variable,
     ("paper_figures", "figure1 profile"): _profiles,
     ("paper_figures", "figure2 profile"): _profiles,
+    ("paper_figures", "no matter of cells"): _cells,
+    ("avalanche_extent", "static layer"): _left,
+    ("avalanche_extent", "rolling layer"): _grown,
+    ("avalanche_extent", "even slope"): _even,
+    ("avalanche_extent", "avalanche below repose"): _below,
+    ("avalanche_extent", "spreads, not travels"): _spread,
+    ("printed_rule", "the literal step"): _literal,
     ("speed_error", "efficiency"): _efficiency,
     ("scaling", "interactive"): _interactive,
 }

@@ -87,6 +87,10 @@ class Decided(Protocol):
         """What became of it."""
 
     @property
+    def remark(self) -> str:
+        """What is to be said of that."""
+
+    @property
     def evidence(self) -> list[tuple[str, Claim]]:
         """Study and claim, those that decide first."""
 
@@ -167,7 +171,7 @@ def _ledger_row(item: Decided, tables: Mapping[str, Tables]) -> dict[str, Any]:
     return {
         "text": item.claim.text,
         "verdict": item.verdict,
-        "remark": item.claim.remark,
+        "remark": item.remark,
         "number": deciding_number(item.evidence, tables),
         "studies": list(dict.fromkeys(name for name, _ in item.evidence)),
     }

@@ -42,6 +42,11 @@ class DecidedClaim:
     verdict: str
     evidence: list[tuple[str, Claim]]
 
+    @property
+    def remark(self) -> str:
+        """What is to be said where that is the verdict."""
+        return self.claim.remark(self.verdict)
+
 
 def decide(findings: Sequence[Finding]) -> list[DecidedClaim]:
     """Every claim of the paper with what became of it."""

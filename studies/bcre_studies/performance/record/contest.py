@@ -33,6 +33,7 @@ from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, load
 
 WAVE = "nonlinear wave, exact"
+PAST_SCARP = "figure 1, past its scarp"
 PDE_TOLERANCE = 1e-5
 """Local error in time per step; what it leaves is below the error in space on all these grids."""
 
@@ -51,7 +52,7 @@ def scenes() -> dict[str, Scene]:
     figure1 = load("figure1")
     return {
         "figure 1, before its scarp": figure1.with_changes(until=150.0),
-        "figure 1, past its scarp": figure1.with_changes(until=250.0, kappa=0.005),
+        PAST_SCARP: figure1.with_changes(until=250.0, kappa=0.005),
         "figure 2": load("figure2"),
         "figure 3": load("figure3"),
         WAVE: load("climbing_wave"),
