@@ -14,8 +14,6 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 import bcre_pde
 from bcre_studies.advisor.candidate import Candidate, Pilot
 from bcre_studies.advisor.deviation import deviation, uncertainty
@@ -36,9 +34,6 @@ REFERENCE_SHARE = 0.5
 
 SHORT_S = 0.02
 """Shorter pilots are run three times, for their time; the median counts."""
-
-SHARP = 0.75
-"""A scarp: the largest fall of u from cell to cell stays by this part as the cells are halved."""
 
 
 class PilotError(ValueError):
@@ -157,8 +152,7 @@ class Reference:
     @property
     def has_scarp(self) -> bool:
         """Whether at some time u falls over a single cell, whatever the cells: a jump."""
-        coarse, fine = (float(np.max(np.abs(np.diff(run.u, axis=1)))) for run in self.runs[-2:])
-        return fine > SHARP * coarse
+        return bcre_pde.jump_stands(*self.runs[-2:])
 
     def candidate(self, observable: str) -> Candidate:
         """BCRE itself as one of the models; the error of its finest pilot is the reference's."""
@@ -191,7 +185,7 @@ def reference(
                 raise
             break
         if len(runs) >= LEAST_PILOTS:
-            error = uncertainty(runs[-1], runs[-2], runs[-3], observable)
+            error = uncertainty(runs, observable)
         cells *= 2
     if len(runs) < LEAST_PILOTS:
         raise PilotError(f"{cells} cells of BCRE would take about {expected:.2g} s")

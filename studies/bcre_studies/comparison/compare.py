@@ -170,7 +170,13 @@ def refine_each(
     /,
     **refinement: Any,
 ) -> list[Measured]:
-    """Solve until each error is :data:`SHARE` of the difference from the automaton's value."""
+    """Solve until each error is :data:`SHARE` of the difference from the automaton's value.
+
+    Of the grids the coarsest is the first that can hold the start of the scene.
+    """
+    coarsest = refinement.pop("coarsest", bcre_pde.COARSEST)
+    while not scene.holds(coarsest):
+        coarsest *= 2
 
     def allowed(values: Sequence[Any]) -> list[float]:
         return [
@@ -183,6 +189,7 @@ def refine_each(
         times,
         lambda solution: measure(run_of(scene, solution)),
         allowed,
+        coarsest,
         **refinement,
     )
 
