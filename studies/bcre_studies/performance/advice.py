@@ -35,7 +35,7 @@ from bcre_studies.models.run import Run, frame_times
 from bcre_studies.performance.random_scenes import kind_of, random_scene
 from bcre_studies.performance.record.record import read
 from bcre_studies.reporting import style
-from bcre_studies.scenes.listing import built_in_names
+from bcre_studies.scenes.listing import studied_names
 from bcre_studies.scenes.scene import Scene, SceneError, load
 from bcre_studies.sweeps.parallel import each
 from bcre_studies.timing.costs import closures_of, recorded
@@ -138,7 +138,7 @@ def own_scene() -> Scene:
 def run() -> dict[str, pd.DataFrame]:
     """Random scenes, the same extrapolated, and what was really the cheapest."""
     both = each(_random, range(SCENES), "advice, random scenes")
-    named = each(_all_models, [*built_in_names(), OWN], "advice, all models")
+    named = each(_all_models, [*studied_names(), OWN], "advice, all models")
     return {
         "comparison": pd.DataFrame([row for rows, _ in both for row in rows]),
         "extrapolated": pd.DataFrame([row for _, rows in both for row in rows]),
