@@ -230,8 +230,8 @@ def run() -> dict[str, pd.DataFrame]:
 def _word(case: tuple[str, str, float]) -> str:
     name, choice, factor = case
     make, word = WORDS[name]
-    scene = changed(make(), choice, factor) if choice else make()
     try:
+        scene = changed(make(), choice, factor) if choice else make()
         return NOT_POSED if scene is None else word(scene)
     except SceneError:  # the grid cannot hold what is to be put on it
         return NOT_POSED
