@@ -115,12 +115,12 @@ def profile_word(scene: Scene, until: float) -> str:
     return str(verdict_of(gap, resolved, left, True, TOLERANCE))
 
 
-def in_both(scene: Scene, until: float, word: Callable[[Run], str], **options: Any) -> str:
-    """The word of the automaton and that of BCRE on twice its cells, or one where they agree."""
+def in_both(scene: Scene, until: float, word: Callable[[Run], str], finer: int = 1) -> str:
+    """The word of the automaton and that of BCRE on as many cells, or one where they agree."""
     times = [float(t) for t in np.linspace(0.0, until, FRAMES)]
     words = [
-        word(model.run(scene, times, cells, **options))
-        for model, cells in ((AUTOMATON, None), (BCRE, 2 * scene.domain.cells))
+        word(model.run(scene, times, cells))
+        for model, cells in ((AUTOMATON, None), (BCRE, finer * scene.domain.cells))
     ]
     return words[0] if words[0] == words[1] else " / ".join(words)
 
@@ -176,7 +176,7 @@ def smoothing(scene: Scene) -> str:
     def word(run: Run) -> str:
         return "smoothed" if np.std(run.u[-1]) < SMOOTHED * np.std(run.u[0]) else "kept"
 
-    return in_both(scene, scene.time.until, word)
+    return in_both(scene, scene.time.until, word, finer=2)
 
 
 def second_critical_slope(scene: Scene) -> str:
@@ -250,10 +250,12 @@ def _claim(name: str, rows: pd.DataFrame) -> Claim:
     posed = [entry for entry in words if entry[2] != NOT_POSED]
     stands = rows["as it stands"].iloc[0]
     turned = [f"{choice} {factor}: {word}" for choice, factor, word in posed if word != stands]
+    unresolved = all(word in (stands, str(Verdict.UNRESOLVED)) for _, _, word in posed)
+    turns = Verdict.UNRESOLVED if unresolved else Verdict.DISAGREE
     return Claim(
         name=name,
         statement=f"The verdict on {name} stands when each of our choices is halved and doubled.",
-        verdict=Verdict.DISAGREE if turned else Verdict.AGREE,
+        verdict=turns if turned else Verdict.AGREE,
         evidence=sentences(
             f"as it stands: {stands}; the same in {len(posed) - len(turned)} of {len(posed)}",
             when(turned, f"it turns with {joined(turned, '; ')}"),
