@@ -271,10 +271,7 @@ def _specialised_claim() -> Claim:
     statement = "Leaving an absent D, kappa, v_up or cut-off out of the compiled code saves time."
     tolerance = "a ratio above 1 for each term and number of cells of the recorded measurement"
     name = "specialised kernels"
-    try:
-        table = specialisation.recorded()
-    except OSError:
-        return quality_check(name, statement, Verdict.UNRESOLVED, "there is no record", tolerance)
+    table = specialisation.recorded()
     ratios = "; ".join(
         f"{term} " + ", ".join(f"{row.ratio:g} ({row.cells:g} cells)" for row in rows.itertuples())
         for term, rows in table.groupby("term", sort=False)
