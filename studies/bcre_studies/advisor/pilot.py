@@ -2,7 +2,7 @@ r"""Short runs on coarse grids: a reference with its own error, and every model 
 
 All models are run on 25, 50, 100, ... cells, from the first that hold the start
 (:mod:`bcre_studies.scenes.held`). The reference is the finest pilot of BCRE on py-pde,
-refined until its grid convergence index (:mod:`bcre_pde.refine`) is small against the tolerance,
+refined until its own error (:mod:`bcre_pde.convergence`) is small against the tolerance,
 or until its part of the allowance is spent. A model is piloted until it is known well enough.
 """
 

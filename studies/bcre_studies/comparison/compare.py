@@ -1,7 +1,7 @@
 """The comparison that every study makes: automaton, BCRE, and BCRE with the automaton's diffusion.
 
-The PDE is refined until the grid convergence index of what is measured is a tenth of the
-difference from the automaton (or of the tolerance, where the difference is smaller still).
+The PDE is refined until its own error in what is measured is a tenth of the difference from the
+automaton (or of the tolerance, where the difference is smaller still).
 """
 
 from __future__ import annotations

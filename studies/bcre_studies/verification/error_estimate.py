@@ -253,9 +253,8 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
 def _claim(name: str, subject: str, rows: pd.DataFrame, table: pd.DataFrame) -> Claim:
     good = bool((rows["covered"] >= COVERED).all())
     evidence = "; ".join(
-        f"{row.quantity}: {row.covered:.1%} of {row.estimates}, the estimate is {row.least:g} to "
-        f"(nine in ten) {row.nine_in_ten_below:g} times the true error, {row.median:g} in the "
-        "median"
+        f"{row.quantity}: {row.covered:.1%} of {row.estimates}; the estimate is at least "
+        f"{row.least:g} times the true error, and {row.median:g} times in the median"
         for row in rows.itertuples()
     )
     alone = table[(table["rule"] == INDEX) & table["regime"].isin(rows["regime"])]
