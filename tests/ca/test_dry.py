@@ -1,4 +1,4 @@
-"""The cut-off: a layer thinner than ``dry`` after a step comes to rest."""
+"""The cut-off: a layer that is thinner than ``dry``, and stays so, comes to rest."""
 
 import math
 from dataclasses import replace
@@ -13,7 +13,7 @@ from bcre_ca import Pile, Rule, advance, step
 
 @settings(max_examples=25)
 @given(data=st.data(), cells=st.integers(1, 30))
-def test_step_moves_what_is_thinner_than_the_cut_off_into_the_surface(
+def test_step_moves_what_is_thinner_than_the_cut_off_and_does_not_grow_past_it_into_the_surface(
     form, rules, piles, bound, data, cells
 ):
     rule = data.draw(rules(form))
@@ -23,7 +23,10 @@ def test_step_moves_what_is_thinner_than_the_cut_off_into_the_surface(
     dry = data.draw(st.sampled_from([0.1, 0.5, 2.0])) * (R.max() + 1e-6)
     flowing_h, flowing_R, outflow = step(h, R, exact, form.ends)
     new_h, new_R, new_outflow = step(h, R, replace(exact, dry=dry), form.ends)
-    thin = flowing_R < dry
+    K = exact.coefficients()
+    leaving = K.outgoing + (K.diffusion or 0.0)
+    coming = R + (1 / leaving if leaving else 1.0) * (flowing_R - R)
+    thin = (flowing_R < dry) & (coming < dry)
     assert np.array_equal(new_R, np.where(thin, 0.0, flowing_R))
     assert np.array_equal(new_h, flowing_h + np.where(thin, flowing_R, 0.0))
     assert new_outflow == outflow

@@ -2,7 +2,7 @@
 
 from bcre_ca.kept import kept
 from bcre_ca.line import kernels as line
-from bcre_ca.line.kernels import driver
+from bcre_ca.line.kernels import bounds
 from bcre_ca.plane import kernels as plane
 from bcre_ca.sources import FOLDER, digest_of
 
@@ -14,7 +14,7 @@ def file_of(compiled):
 
 
 def test_machine_code_of_other_sources_lies_in_other_files():
-    files = [file_of(kept(driver.bound, sources)) for sources in ("one", "one", "other")]
+    files = [file_of(kept(bounds.bound, sources)) for sources in ("one", "one", "other")]
     assert files[0] == files[1] != files[2]
 
 

@@ -1,0 +1,90 @@
+"""The largest stable step for layers as they are."""
+
+from __future__ import annotations
+
+import math
+
+import numba
+import numpy as np
+
+from bcre_ca.coefficients import largest_step
+
+
+@numba.njit(error_model="numpy")
+def _float_of(bits):  # type: ignore[no-untyped-def]
+    return np.int64(bits).view(np.float64)
+
+
+@numba.njit(error_model="numpy")
+def _extremes(h, R, repose_drop):  # type: ignore[no-untyped-def]
+    """Largest R and largest shortfall of a drop, both >= 0.
+
+    Numbers >= 0 are ordered as the integers with the same bits, and a largest integer is found
+    several at a time, which a largest float is not.
+    """
+    largest, shortfall = np.int64(0), np.int64(0)
+    for i in range(R.size):
+        largest = max(largest, np.float64(max(R[i], 0.0)).view(np.int64))
+    for i in range(h.size - 1):
+        missing = max(repose_drop - (h[i] - h[i + 1]), 0.0)
+        shortfall = max(shortfall, np.float64(missing).view(np.int64))
+    return _float_of(largest), _float_of(shortfall)
+
+
+@numba.njit(error_model="numpy")
+def _largest_bend(h, kappa):  # type: ignore[no-untyped-def]
+    """Largest h(i-1) - 2 h(i) + h(i+1), or 0; looked for only where it counts."""
+    if kappa == 0:
+        return 0.0
+    largest = np.int64(0)
+    for i in range(h.size - 2):
+        bend = max((h[i] - h[i + 1]) - (h[i + 1] - h[i + 2]), 0.0)
+        largest = max(largest, np.float64(bend).view(np.int64))
+    return _float_of(largest)
+
+
+@numba.njit(error_model="numpy", fastmath={"reassoc"})
+def _is_finite(h, R):  # type: ignore[no-untyped-def]
+    total = 0.0
+    for i in range(h.size):
+        total += h[i] * 0.0 + R[i] * 0.0
+    return total == 0.0
+
+
+@numba.njit(error_model="numpy")
+def stable_step(h, R, p, period_drop, foot):  # type: ignore[no-untyped-def]
+    """The largest stable step for these layers; NaN where they are not finite.
+
+    p holds every term. ``foot`` says whether the last cell is that at the open foot, beyond which
+    the surface goes on at repose, rather than one inside the pile.
+    """
+    if not _is_finite(h, R):
+        return math.nan
+    last, repose_drop = h.size - 1, p.repose_slope * p.d
+    largest, shortfall = _extremes(h, R, repose_drop)
+    bend = _largest_bend(h, p.kappa)
+    if period_drop is not None:
+        across = h[last] - (h[0] - period_drop)
+        shortfall = max(shortfall, repose_drop - across)
+        before = h[last - 1] - h[last] if last > 0 else across
+        after = h[0] - h[1] if last > 0 else across
+        bend = max(bend, before - across, across - after)
+    elif foot and last > 0:
+        bend = max(bend, (h[last - 1] - h[last]) - repose_drop)
+    sink = p.gamma * shortfall / p.d
+    if p.kappa > 0:
+        sink += p.kappa * bend / p.d**2
+    return largest_step(p, largest, sink)
+
+
+@numba.njit(error_model="numpy")
+def stable_step_within(h, R, p, period_drop, a, b, whole):  # type: ignore[no-untyped-def]
+    """The same for the cells [a, b) of a pile, or the whole of it."""
+    if whole:
+        return stable_step(h, R, p, period_drop, True)
+    return stable_step(h[a:b], R[a:b], p, None, period_drop is None and b == h.size)
+
+
+def bound(h, R, p, period_drop):  # type: ignore[no-untyped-def]
+    """The largest stable step of a whole pile. Compiled by :func:`bcre_ca.kept.kept`."""
+    return stable_step(h, R, p, period_drop, True)
