@@ -10,25 +10,38 @@ import numpy as np
 from bcre_ca.coefficients import largest_step
 
 
+INFINITE = np.float64(np.inf).view(np.int64)
+
+
 @numba.njit(error_model="numpy")
-def _float_of(bits):  # type: ignore[no-untyped-def]
+def _bits(number):  # type: ignore[no-untyped-def]
+    """Numbers >= 0 are ordered as the integers with the same bits, and a largest integer is found
+    several at a time, which a largest float is not."""
+    return np.float64(number).view(np.int64)
+
+
+@numba.njit(error_model="numpy")
+def _number(bits):  # type: ignore[no-untyped-def]
     return np.int64(bits).view(np.float64)
 
 
 @numba.njit(error_model="numpy")
 def _extremes(h, R, repose_drop):  # type: ignore[no-untyped-def]
-    """Largest R and largest shortfall of a drop, both >= 0.
+    """Largest R and largest shortfall of a drop, both >= 0; NaN where a layer is not finite.
 
-    Numbers >= 0 are ordered as the integers with the same bits, and a largest integer is found
-    several at a time, which a largest float is not.
+    One loop and no function of its own for a cell: else the compiler would not vectorise it.
     """
-    largest, shortfall = np.int64(0), np.int64(0)
-    for i in range(R.size):
+    last = h.size - 1
+    largest, shortfall = _bits(max(R[last], 0.0)), np.int64(0)
+    furthest = _bits(abs(h[last] + R[last]))
+    for i in range(last):
         largest = max(largest, np.float64(max(R[i], 0.0)).view(np.int64))
-    for i in range(h.size - 1):
         missing = max(repose_drop - (h[i] - h[i + 1]), 0.0)
         shortfall = max(shortfall, np.float64(missing).view(np.int64))
-    return _float_of(largest), _float_of(shortfall)
+        furthest = max(furthest, np.float64(abs(h[i] + R[i])).view(np.int64))
+    if furthest >= INFINITE:
+        return math.nan, math.nan
+    return _number(largest), _number(shortfall)
 
 
 @numba.njit(error_model="numpy")
@@ -40,26 +53,17 @@ def _largest_bend(h, kappa):  # type: ignore[no-untyped-def]
     for i in range(h.size - 2):
         bend = max((h[i] - h[i + 1]) - (h[i + 1] - h[i + 2]), 0.0)
         largest = max(largest, np.float64(bend).view(np.int64))
-    return _float_of(largest)
-
-
-@numba.njit(error_model="numpy", fastmath={"reassoc"})
-def _is_finite(h, R):  # type: ignore[no-untyped-def]
-    total = 0.0
-    for i in range(h.size):
-        total += h[i] * 0.0 + R[i] * 0.0
-    return total == 0.0
+    return _number(largest)
 
 
 @numba.njit(error_model="numpy")
-def stable_step(h, R, p, period_drop, foot):  # type: ignore[no-untyped-def]
-    """The largest stable step for these layers; NaN where they are not finite.
+def limits(h, R, p, period_drop, foot):  # type: ignore[no-untyped-def]
+    """Largest layer and fastest loss per unit of layer, as :func:`largest_step` takes them.
 
-    p holds every term. ``foot`` says whether the last cell is that at the open foot, beyond which
-    the surface goes on at repose, rather than one inside the pile.
+    NaN where the layers are not finite. p holds every term. ``foot`` says whether the last cell is
+    that at the open foot, beyond which the surface goes on at repose, rather than one inside the
+    pile.
     """
-    if not _is_finite(h, R):
-        return math.nan
     last, repose_drop = h.size - 1, p.repose_slope * p.d
     largest, shortfall = _extremes(h, R, repose_drop)
     bend = _largest_bend(h, p.kappa)
@@ -74,17 +78,26 @@ def stable_step(h, R, p, period_drop, foot):  # type: ignore[no-untyped-def]
     sink = p.gamma * shortfall / p.d
     if p.kappa > 0:
         sink += p.kappa * bend / p.d**2
-    return largest_step(p, largest, sink)
+    return largest, sink
 
 
 @numba.njit(error_model="numpy")
-def stable_step_within(h, R, p, period_drop, a, b, whole):  # type: ignore[no-untyped-def]
+def limits_within(h, R, p, period_drop, a, b, whole):  # type: ignore[no-untyped-def]
     """The same for the cells [a, b) of a pile, or the whole of it."""
     if whole:
-        return stable_step(h, R, p, period_drop, True)
-    return stable_step(h[a:b], R[a:b], p, None, period_drop is None and b == h.size)
+        return limits(h, R, p, period_drop, True)
+    return limits(h[a:b], R[a:b], p, None, period_drop is None and b == h.size)
+
+
+@numba.njit(error_model="numpy")
+def stable_step(p, largest, sink):  # type: ignore[no-untyped-def]
+    """The largest stable step under such limits; NaN where they are."""
+    if math.isnan(largest):
+        return math.nan
+    return largest_step(p, largest, sink)
 
 
 def bound(h, R, p, period_drop):  # type: ignore[no-untyped-def]
     """The largest stable step of a whole pile. Compiled by :func:`bcre_ca.kept.kept`."""
-    return stable_step(h, R, p, period_drop, True)
+    largest, sink = limits(h, R, p, period_drop, True)
+    return stable_step(p, largest, sink)

@@ -14,7 +14,7 @@ import numba
 
 from bcre_ca.coefficients import InPlace, Limited, by_scheme
 from bcre_ca.line.kernels import frozen, in_place, second_order, sweep
-from bcre_ca.line.kernels.bounds import stable_step_within
+from bcre_ca.line.kernels.bounds import limits_within, stable_step
 from bcre_ca.rule import ROUNDING
 
 BLOCK = 64
@@ -82,18 +82,23 @@ def take(h, R, K, steps, account, period_drop, a, b, whole):  # type: ignore[no-
 def _outlasts(  # type: ignore[no-untyped-def]
     h, R, K, p, dt, steps, account, period_drop, is_watched
 ):
-    """``steps`` steps; where they are watched, up to the first block that outgrows dt."""
+    """``steps`` steps; where they are watched, up to the first block that outgrows dt.
+
+    Below limits that have been seen to be harmless the bound need not be found again.
+    """
     low, high = wet_cells(R, 0, R.size)
-    done = 0
+    done, seen_largest, seen_sink = 0, -1.0, -1.0
     while done < steps and low < high:
         together = min(BLOCK, steps - done)
         a, b, whole = window(h.size, low, high, period_drop, K.scheme)
         low, high = take(h, R, K, together, account, period_drop, a, b, whole)
         done += together
         if is_watched:
-            largest = stable_step_within(h, R, p, period_drop, a, b, whole)
-            if not dt <= largest * (1.0 + ROUNDING):
-                return False
+            largest, sink = limits_within(h, R, p, period_drop, a, b, whole)
+            if not (largest <= seen_largest and sink <= seen_sink):
+                if not dt <= stable_step(p, largest, sink) * (1.0 + ROUNDING):
+                    return False
+                seen_largest, seen_sink = max(largest, seen_largest), max(sink, seen_sink)
     return True
 
 

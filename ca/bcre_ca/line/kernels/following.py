@@ -15,7 +15,7 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from bcre_ca.coefficients import every_term, fold
-from bcre_ca.line.kernels.bounds import stable_step_within
+from bcre_ca.line.kernels.bounds import limits_within, stable_step
 from bcre_ca.line.kernels.driver import BLOCK, take, wet_cells, window
 from bcre_ca.rule import ROUNDING
 
@@ -85,6 +85,12 @@ def _wanted(bound, course):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(error_model="numpy")
+def _bound(h, R, every, period_drop, a, b, whole):  # type: ignore[no-untyped-def]
+    largest, sink = limits_within(h, R, every, period_drop, a, b, whole)
+    return stable_step(every, largest, sink)
+
+
+@numba.njit(error_model="numpy")
 def _copy(state, a, b, to):  # type: ignore[no-untyped-def]
     for i in range(a, b):
         to.h[i] = state.h[i]
@@ -119,7 +125,7 @@ def follow(  # type: ignore[no-untyped-def]
     old = State(np.empty_like(h), np.empty_like(R), np.empty_like(account))
     low, high = wet_cells(R, 0, R.size)
     a, b, whole = window(h.size, low, high, period_drop, p.scheme)
-    bound = stable_step_within(h, R, every, period_drop, a, b, whole)
+    bound = _bound(h, R, every, period_drop, a, b, whole)
     for _ in range(blocks):
         if low >= high or bound == math.inf:
             return AT_REST
@@ -140,7 +146,7 @@ def follow(  # type: ignore[no-untyped-def]
                     done = stop
                 if done == before < length:
                     _copy(state, 0, h.size, middle)
-            bound = stable_step_within(h, R, every, period_drop, a, b, whole)
+            bound = _bound(h, R, every, period_drop, a, b, whole)
             if dt <= bound * (1.0 + ROUNDING):
                 break
             if course.step > 0:
@@ -160,5 +166,5 @@ def follow(  # type: ignore[no-untyped-def]
         at = window(h.size, low, high, period_drop, p.scheme)
         if at != (a, b, whole):
             a, b, whole = at
-            bound = stable_step_within(h, R, every, period_drop, a, b, whole)
+            bound = _bound(h, R, every, period_drop, a, b, whole)
     return UNDERWAY
