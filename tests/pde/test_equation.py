@@ -157,5 +157,7 @@ print(*{"pde", "numba", "pandas", "matplotlib"} & set(sys.modules))
 
 
 def test_what_needs_no_solver_imports_neither_py_pde_nor_numba():
-    told = subprocess.run([sys.executable, "-c", LIGHT], capture_output=True, check=True, text=True)
-    assert told.stdout.split() == []
+    loaded = subprocess.run(
+        [sys.executable, "-c", LIGHT], capture_output=True, check=True, text=True
+    )
+    assert loaded.stdout.split() == []

@@ -59,8 +59,9 @@ elif os.geteuid() == 0:
 try:
     replace_bytes(path, bytes(1000))
 except OSError as error:
-    told = str(error)
-    sys.exit(0 if path.name in told and "cannot be written" in told and "\\n" not in told else 3)
+    message = str(error)
+    named = path.name in message and "cannot be written" in message
+    sys.exit(0 if named and "\\n" not in message else 3)
 sys.exit(4)
 """
 
@@ -77,8 +78,8 @@ def spoilt_scenes(kind: str) -> Row:
         for _ in range(EACH):
             path = fuzz.write(Path(folder), fuzz.spoil(kind, chance))
             counts[_what_comes_of(path, run=counts["ran"] < RUN)] += 1
-    told = ("refused", "ran", "accepted, not run", "crashed")
-    came = ", ".join(f"{counts[what]} {what}" for what in told if counts[what])
+    outcomes = ("refused", "ran", "accepted, not run", "crashed")
+    came = ", ".join(f"{counts[what]} {what}" for what in outcomes if counts[what])
     return _row(
         f"scene file: {kind}",
         f"{EACH} files, seeded",

@@ -57,28 +57,32 @@ def evolve(
         return _evolve_frozen(static, rolling, rule, steps, ends, surface)
     require_stable(static, rolling, rule, ends)
     start = static.copy(), rolling.copy()
-    if not kernels.march_watched(static[None], rolling[None], rule, steps, ends).all():
+    if not kernels.march_watched(static[None], rolling[None], [rule], steps, ends).all():
         raise_outgrown(*start, rule, steps, ends)
     return static, rolling
 
 
 def evolve_many(
-    h: ArrayLike, R: ArrayLike, rule: Rule, steps: int, ends: Ends = "open"
+    h: ArrayLike, R: ArrayLike, rule: Rule | Sequence[Rule], steps: int, ends: Ends = "open"
 ) -> tuple[Array, Array]:
-    """:func:`evolve` for many piles of one rule, layers of shape (piles, N).
+    """:func:`evolve` for many piles, layers of shape (piles, N), of one rule or a rule each.
 
     The piles do not touch each other; they are shared out among the processors.
     """
     static, rolling = layers_of(h, R, rank=2)
+    rules = [rule] * len(static) if isinstance(rule, Rule) else list(rule)
+    if len(rules) != len(static):
+        raise ValueError(f"rule: there are {len(rules)} for {len(static)} piles; must be as many")
     steps = whole(steps)
     require_ends(ends)
-    for pile in range(len(static)):
-        require_stable(static[pile], rolling[pile], rule, ends)
+    is_stable = [one.dt for one in rules] <= kernels.stable_steps(static, rolling, rules, ends)
+    for i in np.flatnonzero(~is_stable):  # or not finite, or stable but for rounding
+        require_stable(static[i], rolling[i], rules[i], ends)
     start = static.copy(), rolling.copy()
-    has_outlasted = kernels.march_watched(static, rolling, rule, steps, ends)
+    has_outlasted = kernels.march_watched(static, rolling, rules, steps, ends)
     if not has_outlasted.all():
         first = int(np.argmin(has_outlasted))
-        raise_outgrown(start[0][first], start[1][first], rule, steps, ends)
+        raise_outgrown(start[0][first], start[1][first], rules[first], steps, ends)
     return static, rolling
 
 

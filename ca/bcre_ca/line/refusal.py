@@ -35,7 +35,7 @@ def raise_outgrown(
         while done < steps:
             before, part = (h.copy(), R.copy()), min(together, steps - done)
             h, R = h.copy(), R.copy()
-            if not kernels.march_watched(h[None], R[None], rule, part, ends).all():
+            if not kernels.march_watched(h[None], R[None], [rule], part, ends).all():
                 if together == 1:
                     _raise(h, R, rule, ends, t + (done + 1) * rule.dt)
                 h, R = before

@@ -1,10 +1,10 @@
 r"""Which model, on which cells, answers a scene to a tolerance at the least cost, or in a time.
 
-Every model is piloted (``pilot``); from what the pilots foretell
-(``candidate``) follows on how many cells it does what is asked, and which one does
-it best (``options``). Errors are relative to BCRE, converged, with the material of
-the scene. The step follows its bounds ("auto"): the upwind rule is the more accurate the longer it
-is, (v d/2)(1 - v dt/d), the calibrated one needs a long one, and a shorter one only costs more.
+Every model is piloted (``pilot``). What the pilots predict (``candidate``) gives the cells on which
+a model meets the request, and ``options`` ranks the models that do. Errors are relative to BCRE,
+converged, with the material of the scene. The step follows its bounds ("auto"): the upwind rule
+gains accuracy with a longer step, (v d/2)(1 - v dt/d), and the calibrated rule needs a long one;
+a shorter step only costs more.
 """
 
 from __future__ import annotations
@@ -27,7 +27,6 @@ from bcre_studies.advisor.pilot import (
     Reference,
     candidate,
     reference,
-    sees_start,
     warm_up,
 )
 from bcre_studies.advisor.question import Question
@@ -36,13 +35,13 @@ from bcre_studies.models.registry import BCRE, CANDIDATES, SCHEMES
 from bcre_studies.timing.costs import Costs, closures_of
 
 RESOLVED, USABLE = 0.1, 0.25
-"""The reference is refined to this part of the tolerance; of use if it comes to that part."""
+"""Target and largest usable error of the reference, as parts of the tolerance."""
 
 GONE = 1e-6
-"""A rolling layer of which no more is left has gone: there is nothing to be right about."""
+"""A rolling layer is gone once less than this part of it is left: its error means nothing."""
 
 LEAST_S, MOST_S, PART = 10.0, 30.0, 0.1
-"""Pilots may take this part of a full reference run, but at least and at most so many seconds."""
+"""Pilots may take this part of a full reference run, within these limits in seconds."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +55,7 @@ class Effort:
         advised on every machine.
     seconds: that pilots may take; None for :data:`PART` of a full reference run, within bounds.
     finest: cells of the automaton's finest pilot.
-    tell: is told which pilot runs.
+    tell: called with the name of each pilot before it runs.
     """
 
     costs: Costs
@@ -79,8 +78,8 @@ class Advice:
     """What is advised.
 
     ``options`` are the models that do what was asked for, the best one first; where there is none,
-    ``why`` says for what reason. ``left_out`` tells of the other models why they do not; ``closed``
-    is a closed form that does, with its error.
+    ``why`` says for what reason. ``left_out`` gives the reason for each other
+    model; ``closed`` is a closed form that meets the request, with its error.
     """
 
     question: Question
@@ -182,8 +181,6 @@ def _unresolved(question: Question, against: Reference) -> str:
     """Why the error of the reference is not small."""
     cells = against.run.x.size
     found = f"{question.observable} of BCRE is known to {against.error:.2g} only, on {cells} cells"
-    if not sees_start(question.scene, cells):
-        return f"{cells} cells, the finest pilots, are wider than parts of the start"
     left = float(against.run.R[-1].mean() / (against.run.R[0].mean() or 1.0))
     if question.observable == "R" and left < GONE:
         return f"{found}: {left:.1g} of the layer is left in the domain, which is what R is then"

@@ -1,4 +1,4 @@
-r"""What pilots of a model foretell: its error, its steps and how many cells it needs.
+r"""What the pilots of a model predict: its error, its steps and how many cells it needs.
 
 Between two pilots the error and the steps are interpolated, log in log of the cells N. Beyond the
 last of them
@@ -27,7 +27,7 @@ LEAST_ORDER = 0.3
 """A model that shows less does not converge as far as the pilots can see."""
 
 FARTHEST = 16.0
-"""No error is foretold for grids more than so many times finer than a pilot."""
+"""Errors are extrapolated to grids at most this many times finer than a pilot."""
 
 HALF = 0.5
 """Nor from pilots that are more than half wrong: the error does not fall as a power of d yet."""
@@ -57,7 +57,7 @@ class Pilot:
 class Candidate:
     """A model with at least two pilots, coarsest first.
 
-    ``converges`` tells whether finer cells bring it to BCRE with the scene's own material at all.
+    ``converges``: whether finer cells bring it to BCRE with the scene's own material at all.
     """
 
     model: str

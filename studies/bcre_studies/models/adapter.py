@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
 
 import numpy as np
 
+from bcre_pde import Measured
 from bcre_studies.models.run import Run
 from bcre_studies.scenes.scene import Scene, SceneError
 
@@ -26,6 +28,9 @@ class Adapter(ABC):
     A new model needs :meth:`run`; the other methods serve ``bcre run`` and have defaults that suit
     a model on the scene's own cells.
     """
+
+    refined = False
+    """Whether :meth:`measured` refines a grid, so that what it returns has an error."""
 
     @abstractmethod
     def run(
@@ -62,6 +67,21 @@ class Adapter(ABC):
             where the model fails; the text names the key of the scene that makes it fail.
         """
         return self.run(scene, times, stop=stop)
+
+    def measured(
+        self,
+        scene: Scene,
+        times: Sequence[float],
+        measure: Callable[[Run], Sequence[Any]],
+        allowed: Callable[[Sequence[Any]], Iterable[float]],
+    ) -> list[Measured]:
+        """Several quantities of this model's run, each with its error.
+
+        A rule on cells of its own is what it is and has no error. A model that solves an equation
+        is refined until the error of each quantity is as small as ``allowed`` asks, a function of
+        the quantities so far.
+        """
+        return [Measured(value, 0.0) for value in measure(self.run(scene, times))]
 
     def require_runnable(self, scene: Scene) -> None:
         """Raise :class:`SceneError` where the scene cannot be run, or not within a working day.

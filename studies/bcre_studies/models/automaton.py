@@ -66,7 +66,7 @@ class Automaton(Adapter):
             raise SceneError(f"time.step = {step!r}: {failure}, or be 'auto'") from None
 
     def require_runnable(self, scene: Scene) -> None:
-        thickest = thickest_layer(scene)  # tells an overflow from an unstable step
+        thickest = thickest_layer(scene)  # distinguishes an overflow from an unstable step
         steps = scene.time.until / rule_of(scene).dt
         if scene.time.step == "auto":
             steps = max(steps, scene.time.until * scene.material.gamma * thickest / scene.d)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -42,6 +42,8 @@ WORK_BYTES = {"runge-kutta": 200, "RK45": 800, "DOP853": 1300, "LSODA": 800, "BD
 class Bcre(Adapter):
     """BCRE with the scene's own coefficients, or with those of ``of(scene)``."""
 
+    refined = True
+
     def __init__(self, of: Callable[[Scene], Scene] | None = None) -> None:
         self._of = of or (lambda scene: scene)
 
@@ -61,7 +63,11 @@ class Bcre(Adapter):
         ------
         bcre_pde.SolveError
             where the solver gives up.
+        SceneError
+            where the grid cannot hold the start.
         """
+        if cells is not None:
+            scene.require_held(cells, "solver.cells")
         problem = problem_of(self._of(scene))
         options = solver_options(scene, stop)
         return run_of(scene, bcre_pde.solve(problem, times, cells or finest(scene), **options))
@@ -73,35 +79,55 @@ class Bcre(Adapter):
 
         Small is a tenth of the difference from the first earlier run, or a thousandth of R.
         """
-        x, problem = scene.centres(), problem_of(self._of(scene))
+        x = scene.centres()
 
-        def measure(solution: bcre_pde.Solution) -> Array:
-            run = run_of(scene, solution)
-            return np.array([run.sample(x, frame=frame) for frame in range(run.t.size)])
+        def measure(run: Run) -> list[Array]:
+            return [np.array([run.sample(x, frame=frame) for frame in range(run.t.size)])]
 
-        def allowed(R: Array) -> float:
+        def allowed(values: Sequence[Array]) -> list[float]:
+            (R,) = values
             relative = ALONE * float(np.mean(np.abs(R)))
             if not earlier:
-                return relative
-            return SHARE * max(float(np.mean(np.abs(R - earlier[0].R))), relative)
+                return [relative]
+            return [SHARE * max(float(np.mean(np.abs(R - earlier[0].R))), relative)]
 
-        def measure_on(cells: int) -> tuple[bcre_pde.Solution, list[Array]]:
-            solution = bcre_pde.solve(problem, times, cells, **options)
-            return solution, [measure(solution)]
-
-        options = solver_options(scene, stop)
         try:
-            if scene.solver.cells is None:
-                grids = {"coarsest": _coarsest(scene), "finest": finest(scene)}
-                found = bcre_pde.solve_refined(problem, times, measure, allowed, **grids, **options)
-            else:
-                (found,) = bcre_pde.measure_refined(measure_on, _given_grids(scene.solver.cells))
+            (found,) = self.measured(scene, times, measure, allowed, stop)
         except bcre_pde.SolveError as failure:
             raise SceneError(
                 f"solver.method = {scene.solver.method!r}: {failure}; must be a method that can "
                 f"solve this scene to solver.tolerance = {scene.solver.tolerance!r}"
             ) from None
         return run_of(scene, found.solution, found.error)
+
+    def measured(
+        self,
+        scene: Scene,
+        times: Sequence[float],
+        measure: Callable[[Run], Sequence[Any]],
+        allowed: Callable[[Sequence[Any]], Iterable[float]],
+        stop: Stop | None = None,
+    ) -> list[bcre_pde.Measured]:
+        """As :meth:`Adapter.measured`; the grid of ``[solver]`` is kept where the scene names one.
+
+        Raises
+        ------
+        bcre_pde.SolveError
+            where the solver gives up.
+        """
+        problem, options = problem_of(self._of(scene)), solver_options(scene, stop)
+
+        def on_solution(solution: bcre_pde.Solution) -> Sequence[Any]:
+            return measure(run_of(scene, solution))
+
+        def on_cells(cells: int) -> tuple[bcre_pde.Solution, Sequence[Any]]:
+            solution = bcre_pde.solve(problem, times, cells, **options)
+            return solution, on_solution(solution)
+
+        if scene.solver.cells is not None:
+            return bcre_pde.measure_refined(on_cells, _given_grids(scene))
+        grids = {"coarsest": _coarsest(scene), "finest": finest(scene)}
+        return bcre_pde.solve_refined_each(problem, times, on_solution, allowed, **grids, **options)
 
     def require_runnable(self, scene: Scene) -> None:
         grid = scene.solver.cells or COARSEST
@@ -165,9 +191,14 @@ def run_of(scene: Scene, solution: bcre_pde.Solution, error: float | None = None
     )
 
 
-def _given_grids(cells: int) -> list[int]:
-    """The scene's own PDE grid, and for its error two that are two and four times coarser."""
-    return [grid for grid in (cells // 4, cells // 2, cells) if grid >= bcre_pde.SMALLEST_GRID]
+def _given_grids(scene: Scene) -> list[int]:
+    """The scene's own PDE grid, and for its error two that are two and four times coarser.
+
+    Those that cannot hold the start tell nothing of the error and are left out.
+    """
+    cells = scene.solver.cells or 0
+    grids = (cells // 4, cells // 2, cells)
+    return [grid for grid in grids if grid >= bcre_pde.SMALLEST_GRID and scene.holds(grid)]
 
 
 def _coarsest(scene: Scene) -> int:

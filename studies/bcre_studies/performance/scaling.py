@@ -49,7 +49,7 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     papers = budget[budget["model"] == "automaton, upwind"]
     least = papers.loc[papers["cells"].idxmin()]
     pde = budget[budget["model"].str.startswith("PDE")]
-    told = ", ".join(f"{row.scene} {row.cells:.2g} cells" for row in papers.itertuples())
+    of_automaton = ", ".join(f"{row.scene} {row.cells:.2g} cells" for row in papers.itertuples())
     of_pde = ", ".join(f"{row.scene} {row.cells:.2g}" for row in pde.itertuples())
     return [
         quality_check(
@@ -66,7 +66,7 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
             name="interactive",
             statement="The paper's automaton plays the paper's figures at 60 frames a second.",
             verdict=Verdict.AGREE if least["cells"] >= PAPERS_CELLS else Verdict.DISAGREE,
-            evidence=f"with up to {told}; BCRE's solver with up to {of_pde} cells",
+            evidence=f"with up to {of_automaton}; BCRE's solver with up to {of_pde} cells",
             tolerance=f"at least the {PAPERS_CELLS} cells of the scene in a sixtieth of a second, "
             "one core, drawing not counted",
         ),

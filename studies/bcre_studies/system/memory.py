@@ -16,7 +16,7 @@ GROUP = {
 
 
 class NotEnoughMemoryError(ValueError):
-    """A line that tells what would take how much, and what there is."""
+    """One line: what needs how much memory, and how much there is."""
 
 
 def require(what: str, needed: int) -> None:

@@ -42,7 +42,7 @@ CELL_STEPS = dict(zip(CANDIDATES, (2e6, 2e6, 5e5, 6e4), strict=True))
 """Cell-steps of a measured run: some milliseconds."""
 
 FRAMES = 40
-"""Frames of the run that tells what a frame costs, of one step each."""
+"""Frames of the run that measures the cost of a frame, one step each."""
 
 COURANT = 0.1
 """Of the measured runs: well below every bound."""

@@ -166,7 +166,7 @@ def test_free_surface_has_no_preferred_axis(flow, rng, rule):
 
 
 def test_cut_off_has_a_limit_as_the_step_falls_and_differs_by_a_few_of_it(thick_rule):
-    """A pulse below repose. A cell that gains less than the cut-off in a step fills all the same."""
+    """A pulse below repose: a cell that gains less than that in a step fills all the same."""
     i = np.arange(60)[:, None] + 0.5
     h, R = -0.58 * i * np.ones(12), np.exp(-(((i - 20) / 4) ** 2)) * np.ones(12)
     missing = {}

@@ -6,9 +6,9 @@ import math
 
 import numba
 import numpy as np
+from numba.extending import register_jitable
 
-from bcre_ca.coefficients import largest_step
-
+from bcre_ca.coefficients import largest_step, parameters_in
 
 INFINITE = np.float64(np.inf).view(np.int64)
 
@@ -97,7 +97,20 @@ def stable_step(p, largest, sink):  # type: ignore[no-untyped-def]
     return largest_step(p, largest, sink)
 
 
-def bound(h, R, p, period_drop):  # type: ignore[no-untyped-def]
-    """The largest stable step of a whole pile. Compiled by :func:`bcre_ca.kept.kept`."""
-    largest, sink = limits(h, R, p, period_drop, True)
-    return stable_step(p, largest, sink)
+def stable_steps(h, R, piles, rows, scheme, largest, period_drops):  # type: ignore[no-untyped-def]
+    """Fill in the largest stable steps of some of many piles, by their rows of parameters.
+
+    Compiled by :func:`bcre_ca.kept.kept`.
+    """
+    for j in range(piles.size):
+        p = parameters_in(rows[j], scheme)
+        layer, sink = limits(h[piles[j]], R[piles[j]], p, drop_of(period_drops, j), True)
+        largest[j] = stable_step(p, layer, sink)
+
+
+@register_jitable
+def drop_of(period_drops, j):  # type: ignore[no-untyped-def]
+    """One of the falls of the repose line over a period; None for open ends."""
+    if period_drops is None:
+        return None
+    return period_drops[j]

@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import numba
 
-from bcre_ca.coefficients import InPlace, Limited, by_scheme
+from bcre_ca.coefficients import InPlace, Limited, by_scheme, coefficients_in, parameters_in
 from bcre_ca.line.kernels import frozen, in_place, second_order, sweep
-from bcre_ca.line.kernels.bounds import limits_within, stable_step
+from bcre_ca.line.kernels.bounds import drop_of, limits_within, stable_step
 from bcre_ca.rule import ROUNDING
 
 BLOCK = 64
@@ -103,16 +103,19 @@ def _outlasts(  # type: ignore[no-untyped-def]
 
 
 def march(  # type: ignore[no-untyped-def]
-    h, R, K, p, dt, steps, accounts, period_drop, is_watched, has_outlasted
+    h, R, piles, rows, K, parameters, dts, steps, accounts, period_drops, is_watched, has_outlasted
 ):
-    """``steps`` steps of many piles, shape (piles, N), one after the other.
+    """``steps`` steps of some of many piles, shape (piles, N), one after the other.
 
-    K holds the coefficients of a step dt and p the parameters. ``has_outlasted`` takes whether dt
-    has been stable after each block, for each pile.
+    Each has its own row of coefficients, with the same terms absent as in K, its own row of
+    parameters and dt, its own account, and its own period drop, or None in the place of all.
+    ``has_outlasted`` takes whether dt has been stable after each block, for each pile.
     """
-    for pile in range(h.shape[0]):
-        has_outlasted[pile] = _outlasts(
-            h[pile], R[pile], K, p, dt, steps, accounts[pile], period_drop, is_watched
+    for j in range(piles.size):
+        own, p = coefficients_in(rows[j], K), parameters_in(parameters[j], K.scheme)
+        drop, layers = drop_of(period_drops, j), (h[piles[j]], R[piles[j]])
+        has_outlasted[j] = _outlasts(
+            layers[0], layers[1], own, p, dts[j], steps, accounts[j], drop, is_watched
         )
 
 

@@ -92,7 +92,7 @@ def _seconds_by_error(reach: pd.DataFrame) -> pd.DataFrame:
 
 def _told(row: pd.Series) -> str:
     """Seconds, the ratio to the paper's rule, and a mark for the winner."""
-    told = f"{row['seconds']:.2g} s"
+    shown = f"{row['seconds']:.2g} s"
     if pd.notna(row["to_automaton"]):
-        told += f" ({'<= ' if row['at_least'] else ''}{row['to_automaton']:.2g} x)"
-    return f"{told} *" if row["winner"] else told
+        shown += f" ({'<= ' if row['at_least'] else ''}{row['to_automaton']:.2g} x)"
+    return f"{shown} *" if row["winner"] else shown

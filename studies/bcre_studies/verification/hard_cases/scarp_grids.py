@@ -92,7 +92,7 @@ def _of(table: pd.DataFrame, model: Model, kappa: float) -> pd.DataFrame:
 def claim(table: pd.DataFrame) -> Claim:
     """BCRE converges past the scarp with a curvature term."""
 
-    def told(model: Model, kappa: float) -> str:
+    def differences(model: Model, kappa: float) -> str:
         rows = _of(table, model, kappa)
         R, place = (", ".join(f"{value:g}" for value in rows[key]) for key in ("max_R", "place"))
         return f"max R {R}, place {place} ({rows['verdict'].iloc[-1]})"
@@ -104,9 +104,9 @@ def claim(table: pd.DataFrame) -> Claim:
         statement="Past the scarp of figure 1 BCRE converges with kappa = 0.005.",
         verdict=Verdict.AGREE if (curved["verdict"] == "resolved").all() else Verdict.DISAGREE,
         evidence=f"at t = {TIME:g} on {grids} cells: with kappa = 0.005 "
-        f"{told(BCRE, 0.005)}; with kappa = 0 {told(BCRE, 0.0)}. The automaton, of "
+        f"{differences(BCRE, 0.005)}; with kappa = 0 {differences(BCRE, 0.0)}. The automaton, of "
         f"kappa_eff = gamma d/2, on {', '.join(map(str, CELLS_AUTOMATON))} cells: "
-        f"{told(AUTOMATON, 0.0)}: its curvature goes with the cell, and the scarp with it",
+        f"{differences(AUTOMATON, 0.0)}: its curvature goes with the cell, and the scarp with it",
         tolerance=WHY,
     )
 

@@ -54,7 +54,7 @@ MASS = 1e-12
 SURVIVES, REFUSED, FAILS = "survives", "refused before the start", "fails"
 FRAMES = 5
 LEAST_MASS_ERROR = 1e-13
-"""Below this they are not told apart: rounding differs from processor to processor."""
+"""Smaller values count as equal: rounding differs from processor to processor."""
 
 
 Row = dict[str, Any]
