@@ -84,9 +84,11 @@ def limits(h, R, p, period_drop, foot):  # type: ignore[no-untyped-def]
 @numba.njit(error_model="numpy")
 def limits_within(h, R, p, period_drop, a, b, whole):  # type: ignore[no-untyped-def]
     """The same for the cells [a, b) of a pile, or the whole of it."""
+    if period_drop is None:
+        return limits(h[a:b], R[a:b], p, None, b == h.size)
     if whole:
         return limits(h, R, p, period_drop, True)
-    return limits(h[a:b], R[a:b], p, None, period_drop is None and b == h.size)
+    return limits(h[a:b], R[a:b], p, None, False)
 
 
 @numba.njit(error_model="numpy")

@@ -71,7 +71,9 @@ def window(size, low, high, period_drop, scheme):  # type: ignore[no-untyped-def
 @numba.njit(error_model="numpy")
 def take(h, R, K, steps, account, period_drop, a, b, whole):  # type: ignore[no-untyped-def]
     """At most a block of steps in the window [a, b); the wet cells afterwards."""
-    if whole:
+    if period_drop is None:  # one call, so that the kernel is compiled once
+        _take(h[a:b], R[a:b], K, steps, account, None, K.scheme)
+    elif whole:
         _take(h, R, K, steps, account, period_drop, K.scheme)
     else:
         _take(h[a:b], R[a:b], K, steps, account, None, K.scheme)

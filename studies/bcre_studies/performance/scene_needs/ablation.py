@@ -168,7 +168,8 @@ def _in_single_precision(
     for time in times:
         while time > t + block * dt * (1 + 1e-9) and after[1].any():
             layers, t, steps = after, t + block * dt, steps + (block if dt else 0)
-            wanted = rule.dt if fixed else bcre_ca.MARGIN * _bound(*layers, rule, ends)
+            bound = math.inf if fixed else _bound(*layers, rule, ends)
+            wanted = bcre_ca.MARGIN * bound if math.isfinite(bound) else rule.dt
             after, dt = _shortened(*layers, replace(rule, dt=wanted), block, ends)
         if time > t + block * dt * (1 + 1e-9):
             found, taken = after, block if dt else 0
