@@ -28,7 +28,6 @@ def places(tmp_path, monkeypatch):
     """Reports and store in a temporary folder."""
     monkeypatch.setattr(files, "REPORTS", tmp_path / "reports")
     monkeypatch.setattr(write, "REPORTS", tmp_path / "reports")
-    monkeypatch.setattr(write, "VERDICTS", tmp_path / "reports/verdicts.csv")
     monkeypatch.setattr(store, "CACHE", tmp_path / "cache")
     return tmp_path
 
