@@ -1,7 +1,5 @@
 """The command ``bcre`` as others script against it: files, keys, exit codes, refusals."""
 
-import contextlib
-import io
 import json
 import re
 import subprocess
@@ -9,8 +7,6 @@ import sys
 import tempfile
 from importlib.metadata import entry_points
 from pathlib import Path
-from typing import NamedTuple
-from unittest import mock
 
 import numpy as np
 import pandas as pd
@@ -18,7 +14,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bcre_studies import catalog, cli
+from bcre_studies import catalog
 from bcre_studies.models.automaton import rule_of
 from bcre_studies.running import run as run_module
 from bcre_studies.scenes.listing import built_in_names, built_in_title, line_and_plane_names
@@ -71,32 +67,7 @@ PDE_ERRORS = {
 SHORT = ("--set", "until=2", "--frames", "3")
 
 
-class Ended(NamedTuple):
-    code: int
-    out: str
-    err: str
-
-
-def call(*arguments):
-    """``bcre`` with these arguments in this process; the exit code and what it printed."""
-    out, err = io.StringIO(), io.StringIO()
-    argv = mock.patch.object(sys, "argv", ["bcre", *map(str, arguments)])
-    with argv, contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        try:
-            cli.main()
-            code = 0
-        except SystemExit as ended:
-            code = ended.code
-    return Ended(code, out.getvalue(), err.getvalue())
-
-
 NAMES = {"ca": "automaton", "pde": "PDE"}
-
-
-@pytest.fixture
-def bcre(monkeypatch, tmp_path):
-    monkeypatch.chdir(tmp_path)
-    return call
 
 
 def files(folder="."):
@@ -383,13 +354,13 @@ def test_bad_input_ends_in_one_line_exit_2_and_nothing_on_disk(bcre, arguments, 
 
 @settings(max_examples=30, deadline=None)
 @given(key=st.text(max_size=12), value=st.text(max_size=12))
-def test_unknown_key_is_refused_whatever_its_name_and_value(key, value):
+def test_unknown_key_is_refused_whatever_its_name_and_value(run_bcre, key, value):
     fields = {field for model in SECTIONS.values() for field in model.model_fields}
     name = key.split("=")[0].strip()
     if name in fields | {"title", "material", "domain", "time", "solver"}:
         return
     with tempfile.TemporaryDirectory() as folder:
-        refused(call("run", "figure2", f"--set={key}={value}", "--out", f"{folder}/o"))
+        refused(run_bcre("run", "figure2", f"--set={key}={value}", "--out", f"{folder}/o"))
         assert files(folder) == []
 
 
