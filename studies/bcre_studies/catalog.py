@@ -38,6 +38,9 @@ STUDIES = {
     "avalanche_extent": Entry(
         "validation.avalanche_extent", "What an avalanche moves: how much, how far, and when"
     ),
+    "choices": Entry(
+        "validation.choices", "Do the verdicts stand when our own choices are halved and doubled?"
+    ),
     "modified_equation": Entry(
         "verification.modified_equation",
         "How much of the difference is the automaton's own diffusion?",
@@ -48,6 +51,9 @@ STUDIES = {
     ),
     "order_of_accuracy": Entry(
         "verification.order_of_accuracy", "Observed order of accuracy on exact solutions"
+    ),
+    "error_estimate": Entry(
+        "verification.error_estimate", "How often BCRE's own error estimate covers the true error"
     ),
     "speed_error": Entry("performance.speed_error", "Speed against error"),
     "scaling": Entry("performance.scaling", "Speed by size, and the real-time budget"),

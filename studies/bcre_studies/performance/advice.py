@@ -35,7 +35,7 @@ from bcre_studies.models.run import Run, frame_times
 from bcre_studies.performance.random_scenes import kind_of, random_scene
 from bcre_studies.performance.record.record import recorded as recorded_tables
 from bcre_studies.reporting import style
-from bcre_studies.scenes.listing import built_in_names
+from bcre_studies.scenes.listing import studied_names
 from bcre_studies.scenes.scene import Scene, SceneError, load
 from bcre_studies.sweeps.parallel import each
 from bcre_studies.timing.costs import closures_of, recorded
@@ -70,9 +70,9 @@ FEW = 100
 
 @dataclass(frozen=True)
 class Truth:
-    """BCRE on three grids, coarsest first, the last fine enough to judge by if any is."""
+    """BCRE on doubled grids, coarsest first, the last fine enough to judge by if any is."""
 
-    runs: tuple[Run, Run, Run]
+    runs: tuple[Run, ...]
 
     @property
     def run(self) -> Run:
@@ -80,9 +80,8 @@ class Truth:
         return self.runs[-1]
 
     def error(self, observable: str) -> float:
-        """Its own error, relative: a grid convergence index."""
-        coarse, medium, fine = self.runs
-        return uncertainty(fine, medium, coarse, observable)
+        """Its own error, relative."""
+        return uncertainty(self.runs, observable)
 
     def resolved(self, observable: str) -> bool:
         """Whether others can be judged by it."""
@@ -96,8 +95,8 @@ def truth(scene: Scene) -> Truth:
     runs = [run_model(scene, BCRE.name, times, n) for n in (cells, 2 * cells)]
     while True:
         cells = 2 * runs[-1].x.size
-        runs = [*runs[-2:], run_model(scene, BCRE.name, times, cells)]
-        found = Truth((runs[0], runs[1], runs[2]))
+        runs.append(run_model(scene, BCRE.name, times, cells))
+        found = Truth(tuple(runs))
         if cells >= FINEST_TRUTH or all(map(found.resolved, OBSERVED)):
             return found
 
@@ -138,7 +137,7 @@ def own_scene() -> Scene:
 def run() -> dict[str, pd.DataFrame]:
     """Random scenes, the same extrapolated, and what was really the cheapest."""
     both = each(_random, range(SCENES), "advice, random scenes")
-    named = each(_all_models, [*built_in_names(), OWN], "advice, all models")
+    named = each(_all_models, [*studied_names(), OWN], "advice, all models")
     return {
         "comparison": pd.DataFrame([row for rows, _ in both for row in rows]),
         "extrapolated": pd.DataFrame([row for _, rows in both for row in rows]),
