@@ -63,12 +63,17 @@ def _change(found: Headline) -> str:
     if not judged:
         return "BCRE is unresolved in every figure, so nothing can be said."
     apart = listed([f"{percent(gap.difference)} in {figure_name(gap.figure)}" for gap in judged])
-    shares = list(dict.fromkeys(percent(gap.left) for gap in judged))
-    left = f"{shares[0]} is left in each" if len(shares) == 1 else f"{listed(shares)} are left"
+    most = percent(max(gap.left for gap in judged))
     text = (
         f"At the paper’s parameters the rolling layers differ by {apart}. With both terms added to "
-        f"BCRE, {left}."
+        f"BCRE, at most {most} is left."
     )
+    for gap in judged:
+        if gap.until is not None:
+            text += (
+                f" In {figure_name(gap.figure)} that is at t = {number(gap.until)}; later BCRE is "
+                "unresolved."
+            )
     if unjudged:
         text += f" {listed(unjudged).capitalize()} cannot be judged: BCRE is unresolved there."
     return text

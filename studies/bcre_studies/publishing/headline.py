@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import pandas as pd
 
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON, BCRE
 from bcre_studies.publishing.wording import (
     numeric,
@@ -27,7 +28,8 @@ COARSE, FINE = 0.1, 0.01
 class Gap:
     """How far apart the models are in one of the paper's figures, relative L1 of R at d = 1.
 
-    ``left`` is the same once D_eff and kappa_eff are counted, ``own_error`` BCRE's own.
+    ``left`` is the same once D_eff and kappa_eff are counted, ``own_error`` BCRE's own. ``until``
+    is the time of all this where BCRE is unresolved later on.
     """
 
     figure: str
@@ -35,6 +37,7 @@ class Gap:
     left: float
     own_error: float
     resolved: bool
+    until: float | None = None
 
 
 @dataclass(frozen=True)
@@ -133,18 +136,23 @@ def _own_diffusion(row: pd.Series) -> float:
 def _gaps(table: pd.DataFrame) -> tuple[Gap, ...]:
     """At d = 1; of several times of one figure the last at which BCRE is resolved."""
     rows = table[table["quantity"].str.startswith("R(x)") & (table["d"] == 1.0)]
-    found: dict[str, Gap] = {}
-    for _, row in rows.iterrows():
-        gap = Gap(
-            figure=str(row["case"]),
-            difference=float(row["difference"]),
-            left=float(row["difference_effective"]),
-            own_error=float(row["difference_error"]),
-            resolved=row["verdict"] != "unresolved",
+    gaps = []
+    for figure, times in rows.groupby("case", sort=False):
+        times = times.sort_values("t")
+        resolved = times[times["verdict"] != Verdict.UNRESOLVED]
+        last = (resolved if len(resolved) else times).iloc[-1]
+        later = len(resolved) and last["t"] < times["t"].max()
+        gaps.append(
+            Gap(
+                figure=str(figure),
+                difference=float(last["difference"]),
+                left=float(last["difference_effective"]),
+                own_error=float(last["difference_error"]),
+                resolved=len(resolved) > 0,
+                until=float(last["t"]) if later else None,
+            )
         )
-        if gap.resolved or gap.figure not in found:
-            found[gap.figure] = gap
-    return tuple(found.values())
+    return tuple(gaps)
 
 
 def _slopes(table: pd.DataFrame) -> CriticalSlopes:

@@ -20,8 +20,8 @@ def _paper_figures(tables: Tables) -> list[str]:
     at_one = judged[judged["d"] == 1.0]
     finest = judged[judged["d"] == judged["d"].min()]
     sentences = [
-        "Both models start from the same layers. Their rolling layers are compared at the end: "
-        "the area between the two curves, over the area under BCRE’s."
+        "Both models start from the same layers. Their rolling layers are compared by the area "
+        "between the two curves, over the area under BCRE’s."
     ]
     if len(at_one):
         sentences.append(
@@ -29,12 +29,16 @@ def _paper_figures(tables: Tables) -> list[str]:
             f"{span_of(finest['difference'])} with cells a quarter as long. BCRE with D_eff and "
             f"κ_eff is within {percent(float(at_one['difference_effective'].max()))}."
         )
-    unjudged = sorted(set(profiles["case"]) - set(judged["case"]))
+    late = at_one.groupby("case", sort=False)["t"].max()
+    unjudged = [
+        figure_name(str(case)) + (f" after t = {number(late[case])}" if case in late else "")
+        for case, t in profiles.groupby("case", sort=False)["t"].max().items()
+        if case not in late or t > late[case]
+    ]
     if unjudged:
-        names = listed([figure_name(name) for name in unjudged]).capitalize()
         sentences.append(
-            f"{names} stays unresolved: on the finest grid tried BCRE’s own error is not small "
-            "against the difference."
+            f"{listed(unjudged).capitalize()} stays unresolved: on the finest grid tried BCRE’s "
+            "own error is not small against the difference."
         )
     return sentences
 
