@@ -100,7 +100,7 @@ def _pulse(found: Headline) -> str:
     start, end = pulses.most_steepened
     text = (
         f"In {pulses.cases} runs on slopes above repose, one pulse brought {pulses.came_down} down "
-        f"to repose ({pulses.came_down_bcre} in BCRE): those where the avalanche reached the top."
+        f"to repose ({pulses.came_down_bcre} in BCRE)."
     )
     if pulses.steeper:
         text += (
