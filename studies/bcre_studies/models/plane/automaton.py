@@ -11,6 +11,7 @@ import bcre_ca
 from bcre_ca.plane import Plane, Sand, Source, frames
 from bcre_ca.plane.theory import max_stable_step
 from bcre_studies.models.plane.run import PlaneRun
+from bcre_studies.models.registry import AUTOMATON
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.plane.scene import PlaneScene
 from bcre_studies.scenes.refusal import SceneError
@@ -40,7 +41,7 @@ def run(scene: PlaneScene, times: Sequence[float], threads: int | None = None) -
         raise SceneError(f"time.step = {step!r}: {failure}, or be 'auto'") from None
     last = found[-1]
     return PlaneRun(
-        model="ca",
+        model=AUTOMATON.name,
         scene=scene,
         t=np.array([sand.t for sand in found]),
         h=np.array([sand.h for sand in found]),

@@ -10,6 +10,7 @@ import numpy as np
 import bcre_pde
 from bcre_pde.plane import Material, Problem, solve
 from bcre_studies.models.plane.run import PlaneRun
+from bcre_studies.models.registry import BCRE
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.plane.scene import PlaneScene
 from bcre_studies.scenes.refusal import SceneError
@@ -31,7 +32,7 @@ def run(scene: PlaneScene, times: Sequence[float], threads: int = 1) -> PlaneRun
     except bcre_pde.SolveError as failure:
         raise SceneError(f"domain.cells = {scene.domain.cells!r}: {failure}") from None
     return PlaneRun(
-        model="pde",
+        model=BCRE.name,
         scene=scene,
         t=solution.t,
         h=solution.h,
