@@ -11,7 +11,6 @@ import pandas as pd
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON, BCRE
 from bcre_studies.publishing.wording import (
-    numeric,
     of,
 )
 
@@ -22,6 +21,8 @@ AT_REPOSE = 0.001
 SMALL = 0.05
 """What counts as agreement in a profile; the studies' own tolerance."""
 COARSE, FINE = 0.1, 0.01
+NOT_POSED = "-"
+"""Stands in the study of our choices where a scene has no such choice."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +92,11 @@ class Race:
 
 @dataclass(frozen=True)
 class Headline:
-    """All numbers of the first screen."""
+    """All numbers of the first screen.
+
+    ``choices``: changes of a choice of ours that leave the verdict, of all that were tried;
+    ``orders``: at which the paper's rule and BCRE's solver converge.
+    """
 
     diffusion: tuple[Diffusion, ...]
     gaps: tuple[Gap, ...]
@@ -99,7 +104,7 @@ class Headline:
     pulses: Pulses
     coarse: Race
     fine: Race
-    mass_error: float
+    choices: tuple[int, int]
     orders: tuple[float, float]
 
 
@@ -113,7 +118,7 @@ def headline(tables: Tables) -> Headline:
         pulses=_pulses(tables["repose_return"]["comparison"]),
         coarse=_race(reach, COARSE),
         fine=_race(reach, FINE),
-        mass_error=float(numeric(tables["hard_cases"]["comparison"]["mass_error_at_most"]).max()),
+        choices=_choices(tables["choices"]["comparison"]),
         orders=_orders(tables["order_of_accuracy"]["comparison"]),
     )
 
@@ -211,6 +216,14 @@ def _race(reach: pd.DataFrame, error: float) -> Race:
         else:
             lost_by.append(own / bcre)
     return Race(error, scenes, len(by), tuple(by), tuple(lost_by), better)
+
+
+def _choices(table: pd.DataFrame) -> tuple[int, int]:
+    """How many changes of a choice of ours leave the verdict's word, and how many there are."""
+    changed = table[["halved", "doubled"]]
+    posed = changed != NOT_POSED
+    same = changed.eq(table["as it stands"], axis=0)
+    return int((same & posed).to_numpy().sum()), int(posed.to_numpy().sum())
 
 
 def _orders(table: pd.DataFrame) -> tuple[float, float]:

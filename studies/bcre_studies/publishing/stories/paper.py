@@ -84,6 +84,23 @@ def _one_variable(tables: Tables) -> list[str]:
     ]
 
 
+def _choices(tables: Tables) -> list[str]:
+    rows = tables["comparison"]
+    verdicts = rows.groupby("verdict on", sort=False)["stands"].agg(
+        lambda column: all(column == "yes")
+    )
+    turned = rows[rows["stands"] == "no"].groupby("choice", sort=False).size()
+    sentences = [
+        "The paper names v, D and γ only. Length, slopes, pulse, cells and step are our choices; "
+        "each is halved and doubled in turn.",
+        f"{int(verdicts.sum())} of {len(verdicts)} verdicts stand with every change.",
+    ]
+    if len(turned):
+        most = turned.idxmax()
+        sentences.append(f"The choice that turns most verdicts is {most}: {turned[most]} of them.")
+    return sentences
+
+
 STORIES: dict[str, Story] = {
     "paper_figures": Story(
         "Do the paper’s three figures come out alike in both models?",
@@ -105,5 +122,12 @@ STORIES: dict[str, Story] = {
         "Final slope of the one-variable pile, the two-layer automaton and BCRE, undisturbed and "
         "after a pulse.",
         _one_variable,
+    ),
+    "choices": Story(
+        "Do the verdicts depend on what we chose ourselves?",
+        ("x → x/2 and x → 2 x",),
+        "Verdicts by choices: a disc where halving and doubling leave the verdict, a cross where "
+        "one of them turns it.",
+        _choices,
     ),
 }
