@@ -3,10 +3,10 @@ SHELL := /bin/sh
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: help install reports speed test faults bench check lint clean
+.PHONY: help install reports speed test test-cluster docs faults bench check lint clean
 
 help: ## list the targets
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-9s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-13s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 install: .venv/installed ## create .venv with the locked dependencies
 
@@ -25,8 +25,21 @@ speed: install ## renew the committed record of speed (some minutes, on a quiet 
 	$(BIN)/bcre speed --record
 	$(BIN)/bcre report
 
-test: install ## run the tests
+test: install ## run the tests; those of the page where Chromium is installed
+	@! command -v chromium >/dev/null || $(BIN)/python -c 'import playwright' 2>/dev/null \
+		|| $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --require-hashes -r requirements-browser.lock \
+		|| echo 'Playwright cannot be installed here: the page is not tried in a browser' >&2
 	$(BIN)/python -m pytest
+
+test-cluster: install ## run the sweeps' tests on a Dask scheduler with two workers on this machine
+	@$(BIN)/python -c 'import distributed' 2>/dev/null \
+		|| $(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-cluster.lock
+	$(BIN)/python -m pytest -n 0 -o python_files='cluster_*.py' -o 'pythonpath=tests/robustness tests/cluster' tests/cluster
+
+docs: install ## build the documentation, docs/_build/index.html; a warning is an error
+	@$(BIN)/python -c 'import furo, myst_parser, sphinx' 2>/dev/null \
+		|| $(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-docs.lock
+	$(BIN)/python -m sphinx -b html -q -W --keep-going docs docs/_build
 
 faults: install ## try every fault again and write reports/quality/faults.csv
 	$(BIN)/python tests/robustness/faults.py
@@ -46,5 +59,5 @@ lint: install ## ruff and mypy
 	$(BIN)/mypy
 
 clean: ## remove the environment, caches and everything that is built
-	rm -rf .venv .cache .mypy_cache .pytest_cache .ruff_cache .hypothesis out reports/local
+	rm -rf .venv .cache .mypy_cache .pytest_cache .ruff_cache .hypothesis docs/_build out reports/local
 	find ca pde studies tests -name __pycache__ -type d -prune -exec rm -rf {} +

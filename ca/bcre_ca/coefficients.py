@@ -100,6 +100,42 @@ class Coefficients(NamedTuple):
     scheme: CompiledScheme
 
 
+def row_of(terms: Parameters | Coefficients) -> list[float]:
+    """The terms as numbers, without the scheme; 0 for an absent one."""
+    *numbers, _ = terms
+    return [0.0 if number is None else number for number in numbers]
+
+
+@register_jitable
+def coefficients_in(row: Any, like: Coefficients) -> Coefficients:
+    """What :func:`row_of` has made a row of; ``like`` says which terms are absent."""
+    return Coefficients(
+        row[0],
+        _unless_absent(like.diffusion, row[1]),
+        row[2],
+        row[3],
+        row[4],
+        _unless_absent(like.saturation, row[5]),
+        _unless_absent(like.curvature, row[6]),
+        _unless_absent(like.wave_correction, row[7]),
+        _unless_absent(like.dry, row[8]),
+        like.scheme,
+    )
+
+
+@register_jitable
+def parameters_in(row: Any, scheme: CompiledScheme) -> Parameters:
+    """What :func:`row_of` has made a row of, where no term is absent."""
+    return Parameters(row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], scheme)
+
+
+@register_jitable
+def _unless_absent(like: Any, value: float) -> Any:
+    if like is None:
+        return None
+    return value
+
+
 @register_jitable
 def fold(p: Parameters, dt: float) -> Coefficients:
     """The coefficients of a step dt.

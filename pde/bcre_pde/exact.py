@@ -125,7 +125,7 @@ def frozen_slope_release(
     )
 
 
-def climbing_hump(
+def simple_wave_of_hump(
     material: Material, height: float, width: float, length: float, until: float
 ) -> ExactSolution:
     """The simple wave of R0 = 1 + height exp(-((x - length/2)/width)^2), periodic.
@@ -141,6 +141,19 @@ def climbing_hump(
 
     name = "thick climbing wave" if material.Gamma else "climbing wave"
     return ExactSolution(name, material, length, "periodic", until, layers, (0.0, length))
+
+
+def climbing_hump(
+    v: float,
+    gamma: float,
+    height: float,
+    width: float,
+    length: float,
+    until: float,
+    Sc: float = 0.5,
+) -> ExactSolution:
+    """:func:`simple_wave_of_hump` in BCRE: R(x, t) = R0(x + gamma R t)."""
+    return simple_wave_of_hump(Material(v, 0.0, gamma, Sc), height, width, length, until)
 
 
 def tilted_climbing_wave(

@@ -82,7 +82,11 @@ def surface(material: Material, x: Array, R: Array) -> Array:
 
 
 def breaking_time(steepest_rise: float) -> float:
-    """t* = 1/max dc(R0)/dx: when the wave becomes vertical."""
+    """t* = 1/max dc(R0)/dx: when the wave becomes vertical.
+
+    >>> breaking_time(steepest_rise=0.1)
+    10.0
+    """
     return 1 / steepest_rise if steepest_rise > 0 else math.inf
 
 
@@ -101,7 +105,11 @@ def scarp_layer(material: Material, H: float) -> float:
 
 
 def scarp_speed(material: Material, H: float) -> float:
-    """c(R*), the climb of a sharp scarp, H the jump of u across it; for BCRE gamma H - v."""
+    """c(R*), the climb of a sharp scarp, H the jump of u across it; for BCRE gamma H - v.
+
+    >>> scarp_speed(Material(v=1.0, D=0.0, gamma=0.5, Sc=0.5), H=10.0)
+    4.0
+    """
     return climb(material, scarp_layer(material, H))
 
 

@@ -25,6 +25,9 @@ def second_critical_slope(v: float, D: float, gamma: float, Sc: float) -> float:
     """Sd = Sc + v^2/(4 D gamma): above it a frozen slope grows R at every fixed place.
 
     Infinite where D or gamma is zero (but v is not): everything is then carried away first.
+
+    >>> second_critical_slope(v=1.0, D=1.0, gamma=0.5, Sc=0.5)
+    1.0
     """
     if v == 0:
         return Sc

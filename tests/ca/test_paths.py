@@ -9,7 +9,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bcre_ca import BLOCK, Pile, Rule, evolve, evolve_many, march, stepped_cells
+from bcre_ca import (
+    BLOCK,
+    Pile,
+    Rule,
+    UnstableStep,
+    evolve,
+    evolve_many,
+    march,
+    stepped_cells,
+)
 from bcre_ca.line import kernels
 from bcre_ca.line.kernels import sweep
 
@@ -171,12 +180,42 @@ def test_many_piles_are_each_evolved_as_one(number, options, ends, piles, cells,
         assert_same((together[0][pile], together[1][pile]), alone)
 
 
+KINDS = [{}, {"D": 0.0}, {"scheme": "limited"}, {"order": "left"}, {"order": "right"}]
+
+
+@pytest.mark.parametrize("ends", ["open", "periodic"])
+@settings(max_examples=4)
+@given(seed=st.integers(0, 1000), cells=st.integers(2, 150))
+def test_many_piles_with_a_rule_each_are_each_evolved_as_one(ends, seed, cells):
+    rng = np.random.default_rng(seed)
+    kinds = rng.permutation(KINDS * 2)
+    dts = rng.uniform(0.05, 0.2, len(kinds))
+    rules = [
+        replace(RULE, gamma=RULE.gamma * rng.uniform(0.5, 1), dt=dt, **kind)
+        for kind, dt in zip(kinds, dts, strict=True)
+    ]
+    h, R = (np.stack([layer] * len(rules)) for layer in rough(cells))
+    h, R = 0.1 * h, R * rng.uniform(0, 0.5, (len(rules), 1))
+    together = evolve_many(h, R, rules, 70, ends)
+    for i, rule in enumerate(rules):
+        assert_same((together[0][i], together[1][i]), evolve(h[i], R[i], rule, 70, ends))
+
+
+def test_one_unstable_rule_of_many_is_refused_as_it_is_alone():
+    h, R = (np.stack([layer] * 3) for layer in rough(50))
+    rules = [replace(RULE, dt=dt) for dt in (0.1, 50.0, 0.1)]
+    with pytest.raises(UnstableStep, match="dt = 50 cannot be stable"):
+        evolve_many(h, R, rules, 10)
+    with pytest.raises(ValueError, match="there are 2 for 3 piles; must be as many"):
+        evolve_many(h, R, rules[:2], 10)
+
+
 def test_many_piles_lose_the_sum_of_what_each_loses():
     layers = [layer.astype(np.float32) for layer in rough(50)]
     h, R = (np.stack([layer] * 3) for layer in layers)
     R *= np.array([[1.0], [0.5], [0.0]], np.float32)
     alone = [marched(h[i], R[i], RULE, 70, "open")[2] for i in range(3)]
-    assert kernels.march_many(h, R, RULE, 70, "open") == math.fsum(alone)
+    assert kernels.march_many(h, R, [RULE] * 3, 70, "open") == math.fsum(alone)
     assert alone[0] > alone[1] > alone[2] == 0
 
 

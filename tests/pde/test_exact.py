@@ -7,7 +7,7 @@ import sympy as sp
 from bcre_pde import Material, exact, solve
 
 GAMMA, LENGTH, UNTIL = 0.5, 20.0, 2.0
-HUMP = exact.climbing_hump(Material(1.0, 0.0, GAMMA, 0.5), 0.3, 1.5, LENGTH, UNTIL)
+HUMP = exact.climbing_hump(1.0, GAMMA, 0.3, 1.5, LENGTH, UNTIL)
 
 
 THICK = Material(1.0, 0.0, GAMMA, 0.5, v_up=0.8, Gamma=0.7)
@@ -50,7 +50,7 @@ CASES = {
     "surface_mode": lambda: exact.surface_mode(2 * math.pi / 10, gamma=0.5, kappa=0.1, v=1.0),
     "frozen_slope_release": lambda: exact.frozen_slope_release(2.0, v=1.0, D=0.5, gamma=0.05),
     "climbing_hump": lambda: HUMP,
-    "thick_climbing_hump": lambda: exact.climbing_hump(THICK, 0.3, 1.5, LENGTH, UNTIL),
+    "thick_climbing_hump": lambda: exact.simple_wave_of_hump(THICK, 0.3, 1.5, LENGTH, UNTIL),
     "tilted_climbing_wave": lambda: exact.tilted_climbing_wave(0.2, 1.0, 0.5, 0.3, 3.0),
     "steady_filling": lambda: exact.steady_filling(0.05, 1.0, 0.1),
     "saturated_flow": lambda: exact.saturated_flow(0.25, 0.4, v=1.3, v_up=0.6),

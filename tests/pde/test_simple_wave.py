@@ -70,7 +70,7 @@ def test_breaking_time_of_bcre_is_that_of_its_steepest_rise():
 
 @pytest.mark.parametrize("closure", ["saturated", "thick"])
 def test_order_of_pde_on_the_simple_wave_is_at_least_four(closure):
-    wave = exact.climbing_hump(CLOSURES[closure], 0.4, 1.7, 22.0, 1.5)
+    wave = exact.simple_wave_of_hump(CLOSURES[closure], 0.4, 1.7, 22.0, 1.5)
     cells = [100, 200, 400]
     errors = []
     for n in cells:

@@ -11,14 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bcre_ca.line import kernels
-from bcre_ca.line.kernels import BLOCK
+from bcre_ca.line.kernels import AT_ONCE, BLOCK
 from bcre_ca.line.pile import Pile, layers_of, require_ends, whole
 from bcre_ca.rule import Ends, Rule, UnstableStep
 
 Array = NDArray[np.float64]
-
-AT_ONCE = 200_000_000
-"""Cell-steps of one compiled call, which Ctrl-C cannot interrupt."""
 
 MARGIN = 0.8
 """Share of the bound that a followed step takes, so that a block of steps seldom outgrows it."""
@@ -51,6 +48,12 @@ def evolve(
         where the layers have outgrown dt by the end.
     ValueError
         for layers of unequal or wrong shape, empty or not finite.
+
+    >>> import numpy as np
+    >>> rule = Rule(v=0.1, D=0.1, gamma=0.01, Sc=0.5, d=1.0, dt=0.4)
+    >>> h, R = evolve(0.5 * np.arange(20.0)[::-1], np.eye(20)[3], rule, steps=10)
+    >>> float(round((h + R).sum() - 95, 12))
+    1.0
     """
     static, rolling = layers_of(h, R, rank=1)
     steps = whole(steps)
@@ -65,23 +68,34 @@ def evolve(
 
 
 def evolve_many(
-    h: ArrayLike, R: ArrayLike, rule: Rule, steps: int, ends: Ends = "open"
+    h: ArrayLike, R: ArrayLike, rule: Rule | Sequence[Rule], steps: int, ends: Ends = "open"
 ) -> tuple[Array, Array]:
-    """:func:`evolve` for many piles of one rule, layers of shape (piles, N).
+    """:func:`evolve` for many piles, layers of shape (piles, N), of one rule or a rule each.
 
     The piles do not touch each other; they are shared out among the processors.
     """
     static, rolling = layers_of(h, R, rank=2)
+    rules = [rule] * len(static) if isinstance(rule, Rule) else list(rule)
+    if len(rules) != len(static):
+        raise ValueError(f"rule: there are {len(rules)} for {len(static)} piles; must be as many")
     steps = whole(steps)
     require_ends(ends)
-    starts = [Pile(*layers) for layers in zip(static.copy(), rolling.copy(), strict=True)]
-    largest = min(kernels.stable_step(pile.h, pile.R, rule, ends) for pile in starts)
-    rule.require_within(largest, float(rolling.max()))
-    for part in _parts(steps, static.size):
-        kernels.march_many(static, rolling, rule, part, ends)
-    for i, pile in enumerate(starts):
-        _require_outlasted(pile, static[i], rolling[i], rule, steps, ends)
+    for i in _unstable(static, rolling, rules, ends):
+        _require_stable(static[i], rolling[i], rules[i], ends)
+    starts = static.copy(), rolling.copy()
+    for part in _parts(steps, static.shape[1]):
+        kernels.march_many(static, rolling, rules, part, ends)
+    for i in _unstable(static, rolling, rules, ends):
+        start = Pile(starts[0][i], starts[1][i])
+        _require_outlasted(start, static[i], rolling[i], rules[i], steps, ends)
     return static, rolling
+
+
+def _unstable(h: Array, R: Array, rules: Sequence[Rule], ends: Ends) -> Iterator[int]:
+    """The piles whose dt may not be stable, or are not finite."""
+    steps = np.array([rule.dt for rule in rules])
+    stable = steps <= kernels.stable_steps(h, R, rules, ends)
+    return (int(i) for i in np.flatnonzero(~stable))
 
 
 def march(h: Array, R: Array, rule: Rule, steps: int, ends: Ends = "open") -> float:

@@ -18,10 +18,10 @@ by the flux through the ends alone. E itself is the law of :mod:`bcre_pde.exchan
 
 Open ends: no flux through the top, and u_xx = 0 there; the advective flux v R through the foot,
 beyond which the surface goes on at repose. So u_x = 0 on the foot, where u obeys
-du_foot/dt = kappa R u_xx and stays as it is if kappa = 0. A wall at the
-foot is a mirror: no flux, and a surface that is level against it, u_x = Sc. The stencils that would reach past an
+du_foot/dt = kappa R u_xx and stays as it is if kappa = 0. The stencils that would reach past an
 open end are those of :mod:`bcre_pde.stencils`; the flux through the foot itself is of order 1, as
-R_x = 0 there. Periodic ends wrap.
+R_x = 0 there. A wall at the foot is a mirror: no flux, and a surface that is level against it, u_x
+= Sc. Periodic ends wrap.
 """
 
 from __future__ import annotations

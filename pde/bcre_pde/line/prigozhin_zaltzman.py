@@ -21,6 +21,7 @@ square, that stands:
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 
@@ -86,7 +87,7 @@ def evolve(
     edges = dx * np.arange(h.size + 1)
     shares = [(source, source.over(edges) / (source.rate or 1.0)) for source in sources]
     surfaces, left = [np.array(h, dtype=float)], [0.0]
-    for now, then in zip(times[:-1], times[1:], strict=True):
+    for now, then in itertools.pairwise(times):
         poured = sum(
             ((source.poured(then) - source.poured(now)) * share for source, share in shares),
             np.zeros(h.size),

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import bcre_pde
+from bcre_pde.source import Source
 from bcre_studies.models.adapter import (
     Adapter,
     Stop,
@@ -19,6 +20,9 @@ from bcre_studies.models.adapter import (
 from bcre_studies.models.run import Run
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, SceneError
+
+if TYPE_CHECKING:
+    from bcre_pde.line.marched import MarchedOnLine
 
 SHARE = 0.1
 """BCRE's own error may be this part of the difference that is reported."""
@@ -40,10 +44,25 @@ WORK_BYTES = {"runge-kutta": 200, "RK45": 800, "DOP853": 1300, "LSODA": 800, "BD
 
 
 class Bcre(Adapter):
-    """BCRE with the scene's own coefficients, or with those of ``of(scene)``."""
+    """BCRE with the scene's own coefficients, or with those of ``of(scene)``.
+
+    A further model on py-pde has its own :attr:`equation` and :meth:`problem`.
+    """
+
+    refined = True
+    equation: type[MarchedOnLine] | None = None
+    """What :func:`bcre_pde.solve` solves; None is BCRE."""
 
     def __init__(self, of: Callable[[Scene], Scene] | None = None) -> None:
         self._of = of or (lambda scene: scene)
+
+    def problem(self, scene: Scene) -> bcre_pde.Problem:
+        """The scene as an initial value problem of this model."""
+        return problem_of(self._of(scene))
+
+    def _options(self, scene: Scene, stop: Stop | None) -> dict[str, Any]:
+        options = solver_options(scene, stop)
+        return options if self.equation is None else options | {"equation": self.equation}
 
     def on(self, scene: Scene, cells: int) -> Scene:
         return scene.with_changes(**{"solver.cells": cells})
@@ -61,9 +80,12 @@ class Bcre(Adapter):
         ------
         bcre_pde.SolveError
             where the solver gives up.
+        SceneError
+            where the grid cannot hold the start.
         """
-        problem = problem_of(self._of(scene))
-        options = solver_options(scene, stop)
+        if cells is not None:
+            scene.require_held(cells, "solver.cells")
+        problem, options = self.problem(scene), self._options(scene, stop)
         return run_of(scene, bcre_pde.solve(problem, times, cells or finest(scene), **options))
 
     def answer(
@@ -73,35 +95,55 @@ class Bcre(Adapter):
 
         Small is a tenth of the difference from the first earlier run, or a thousandth of R.
         """
-        x, problem = scene.centres(), problem_of(self._of(scene))
+        x = scene.centres()
 
-        def measure(solution: bcre_pde.Solution) -> Array:
-            run = run_of(scene, solution)
-            return np.array([run.sample(x, frame=frame) for frame in range(run.t.size)])
+        def measure(run: Run) -> list[Array]:
+            return [np.array([run.sample(x, frame=frame) for frame in range(run.t.size)])]
 
-        def allowed(R: Array) -> float:
+        def allowed(values: Sequence[Array]) -> list[float]:
+            (R,) = values
             relative = ALONE * float(np.mean(np.abs(R)))
             if not earlier:
-                return relative
-            return SHARE * max(float(np.mean(np.abs(R - earlier[0].R))), relative)
+                return [relative]
+            return [SHARE * max(float(np.mean(np.abs(R - earlier[0].R))), relative)]
 
-        def measure_on(cells: int) -> tuple[bcre_pde.Solution, list[Array]]:
-            solution = bcre_pde.solve(problem, times, cells, **options)
-            return solution, [measure(solution)]
-
-        options = solver_options(scene, stop)
         try:
-            if scene.solver.cells is None:
-                grids = {"coarsest": _coarsest(scene), "finest": finest(scene)}
-                found = bcre_pde.solve_refined(problem, times, measure, allowed, **grids, **options)
-            else:
-                (found,) = bcre_pde.measure_refined(measure_on, _given_grids(scene.solver.cells))
+            (found,) = self.measured(scene, times, measure, allowed, stop)
         except bcre_pde.SolveError as failure:
             raise SceneError(
                 f"solver.method = {scene.solver.method!r}: {failure}; must be a method that can "
                 f"solve this scene to solver.tolerance = {scene.solver.tolerance!r}"
             ) from None
         return run_of(scene, found.solution, found.error)
+
+    def measured(
+        self,
+        scene: Scene,
+        times: Sequence[float],
+        measure: Callable[[Run], Sequence[Any]],
+        allowed: Callable[[Sequence[Any]], Iterable[float]],
+        stop: Stop | None = None,
+    ) -> list[bcre_pde.Measured]:
+        """As :meth:`Adapter.measured`; the grid of ``[solver]`` is kept where the scene names one.
+
+        Raises
+        ------
+        bcre_pde.SolveError
+            where the solver gives up.
+        """
+        problem, options = self.problem(scene), self._options(scene, stop)
+
+        def on_solution(solution: bcre_pde.Solution) -> Sequence[Any]:
+            return measure(run_of(scene, solution))
+
+        def on_cells(cells: int) -> tuple[bcre_pde.Solution, Sequence[Any]]:
+            solution = bcre_pde.solve(problem, times, cells, **options)
+            return solution, on_solution(solution)
+
+        if scene.solver.cells is not None:
+            return bcre_pde.measure_refined(on_cells, _given_grids(scene))
+        grids = {"coarsest": _coarsest(scene), "finest": finest(scene)}
+        return bcre_pde.solve_refined_each(problem, times, on_solution, allowed, **grids, **options)
 
     def require_runnable(self, scene: Scene) -> None:
         grid = scene.solver.cells or COARSEST
@@ -128,9 +170,19 @@ def problem_of(scene: Scene) -> bcre_pde.Problem:
             Sc=material.Sc,
             kappa=material.kappa,
             v_up=math.inf if material.v_up is None else material.v_up,
+            Gamma=material.Gamma,
         ),
         length=scene.domain.length,
         ends=scene.domain.ends,
+        sources=sources_of(scene),
+    )
+
+
+def sources_of(scene: Scene) -> tuple[Source, ...]:
+    """The scene's sources as ``bcre_pde`` takes them."""
+    return tuple(
+        Source(source.rate, source.place, source.width, source.start, source.end)
+        for source in scene.source
     )
 
 
@@ -165,9 +217,14 @@ def run_of(scene: Scene, solution: bcre_pde.Solution, error: float | None = None
     )
 
 
-def _given_grids(cells: int) -> list[int]:
-    """The scene's own PDE grid, and for its error two that are two and four times coarser."""
-    return [grid for grid in (cells // 4, cells // 2, cells) if grid >= bcre_pde.SMALLEST_GRID]
+def _given_grids(scene: Scene) -> list[int]:
+    """The scene's own PDE grid, and for its error two that are two and four times coarser.
+
+    Those that cannot hold the start tell nothing of the error and are left out.
+    """
+    cells = scene.solver.cells or 0
+    grids = (cells // 4, cells // 2, cells)
+    return [grid for grid in grids if grid >= bcre_pde.SMALLEST_GRID and scene.holds(grid)]
 
 
 def _coarsest(scene: Scene) -> int:

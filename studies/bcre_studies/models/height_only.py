@@ -20,6 +20,9 @@ from bcre_studies.scenes.scene import Scene
 class HeightOnly(Adapter):
     """The one-variable control; it needs no more than :meth:`run`."""
 
+    ends = ("open", "periodic")
+    admits = ()
+
     def run(
         self,
         scene: Scene,
@@ -27,6 +30,8 @@ class HeightOnly(Adapter):
         cells: int | None = None,
         stop: Stop | None = None,
     ) -> Run:
+        if cells is not None:
+            scene.require_held(cells)
         x = scene.centres(cells)
         d = scene.domain.length / x.size
         start = np.sum(scene.initial(x), axis=0)

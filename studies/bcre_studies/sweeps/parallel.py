@@ -1,4 +1,4 @@
-"""Many cases at once, with a progress bar: the one place that knows of processes.
+"""Many cases at once, with a progress bar, on this machine or on a cluster.
 
 Within :func:`kept` every finished case is a file, so that a run that is killed and started again
 measures only the cases that it had not finished.
@@ -7,20 +7,19 @@ measures only the cases that it had not finished.
 from __future__ import annotations
 
 import os
-import threading
-import time
 import warnings
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from contextvars import ContextVar
-from functools import cache
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import joblib
+from rich.console import Console
 from rich.markup import escape
 from rich.progress import track
 
+from bcre_studies.sweeps.workers import connected, end_with
 from bcre_studies.system import pickles
 
 Case = TypeVar("Case")
@@ -30,6 +29,7 @@ Result = TypeVar("Result")
 warnings.filterwarnings("ignore", "A worker stopped while some jobs", UserWarning)
 
 _folder: ContextVar[Path | None] = ContextVar("folder of finished cases", default=None)
+_elsewhere: ContextVar[bool] = ContextVar("whether the workers are those of a cluster")
 
 
 @contextmanager
@@ -46,6 +46,28 @@ def kept(folder: Path) -> Iterator[None]:
         _folder.reset(before)
 
 
+@contextmanager
+def on(scheduler: str | None) -> Iterator[None]:
+    """Measure on the workers of the Dask scheduler at this address; None: on all processors here.
+
+    Its workers must have the same sources as this process.
+
+    Raises
+    ------
+    ClusterError
+        where no scheduler answers.
+    """
+    if scheduler is None:
+        yield
+        return
+    with connected(scheduler) as client, joblib.parallel_config("dask", client=client):
+        before = _elsewhere.set(True)
+        try:
+            yield
+        finally:
+            _elsewhere.reset(before)
+
+
 def each(function: Callable[[Case], Result], cases: Iterable[Case], label: str) -> list[Result]:
     """``[function(case) for case in cases]`` on all processors, in the order of the cases.
 
@@ -56,44 +78,46 @@ def each(function: Callable[[Case], Result], cases: Iterable[Case], label: str) 
 
     ``LOKY_MAX_CPU_COUNT`` limits the processors, as everywhere in joblib.
     """
-    todo = list(cases)
-    folder, parent = _folder.get(), os.getpid()
-    tasks = [
-        joblib.delayed(_once)(function, case, _place(folder, function, case), parent)
-        for case in todo
-    ]
-    results = joblib.Parallel(n_jobs=-1, return_as="generator")(tasks)
-    with closing(results):
-        return list(track(results, description=escape(f"{label:24}"), total=len(todo)))
+    todo, folder = list(cases), _folder.get()
+    places = [None if folder is None else _place(folder, function, case) for case in todo]
+    results = _finished(places)
+    found = len(results)
+    parent = None if _elsewhere.get(False) else os.getpid()
+    tasks = (
+        joblib.delayed(_numbered)(i, function, case, parent)
+        for i, case in enumerate(todo)
+        if i not in results
+    )
+    measured = joblib.Parallel(n_jobs=-1, return_as="generator_unordered")(tasks)
+    with closing(measured):
+        what, console = escape(f"{label:24}"), Console(stderr=True)
+        shown = track(measured, what, total=len(todo), completed=found, console=console)
+        for i, result in shown:
+            results[i] = result
+            place = places[i]
+            if place is not None:
+                pickles.dump(place, result)
+    return [results[i] for i in range(len(todo))]
 
 
-def _place(folder: Path | None, function: Callable[[Case], Result], case: Case) -> Path | None:
-    return None if folder is None else folder / f"{joblib.hash((function, case))}.pickle"
+def _place(folder: Path, function: Callable[[Any], Any], case: Any) -> Path:
+    return folder / f"{joblib.hash((function, case))}.pickle"
 
 
-def _once(
-    function: Callable[[Case], Result], case: Case, place: Path | None, parent: int
-) -> Result:
-    """The result of a case: from its place where it is whole there, else measured and put there."""
-    _end_with(parent)
-    if place is None:
-        return function(case)
-    try:
-        result: Result = pickles.load(place)
-    except LookupError:
-        result = function(case)
-        pickles.dump(place, result)
-    return result
+def _finished(places: list[Path | None]) -> dict[int, Any]:
+    """The results that are whole in their places, by the numbers of their cases."""
+    results = {}
+    for i, place in enumerate(places):
+        if place is not None:
+            with suppress(LookupError):
+                results[i] = pickles.load(place)
+    return results
 
 
-@cache
-def _end_with(parent: int) -> None:
-    """Let a worker end when the run that started it is gone, even by a kill that it cannot see."""
-
-    def watch() -> None:
-        while os.getppid() == parent:
-            time.sleep(0.5)
-        os._exit(1)
-
-    if os.getpid() != parent:
-        threading.Thread(target=watch, daemon=True).start()
+def _numbered(
+    number: int, function: Callable[[Case], Result], case: Case, parent: int | None
+) -> tuple[int, Result]:
+    """What a worker does; one of this machine ends with the ``parent`` that started it."""
+    if parent is not None:
+        end_with(parent)
+    return number, function(case)

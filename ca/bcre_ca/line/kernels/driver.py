@@ -5,7 +5,7 @@ the window grows by one cell a step at either end. A block of steps therefore ru
 widened by as many cells, and the window is found anew after it. The window must not cross joined
 ends: where it would, and in the in-place readings, the whole pile is stepped.
 
-``march``, ``march_frozen``, ``follow`` and ``bound`` are compiled by :func:`bcre_ca.kept.kept`.
+``march``, ``march_frozen``, ``follow`` and ``bounds`` are compiled by :func:`bcre_ca.kept.kept`.
 """
 
 from __future__ import annotations
@@ -14,8 +14,18 @@ import math
 
 import numba
 import numpy as np
+from numba.extending import register_jitable
 
-from bcre_ca.coefficients import InPlace, Limited, by_scheme, every_term, fold, largest_step
+from bcre_ca.coefficients import (
+    InPlace,
+    Limited,
+    by_scheme,
+    coefficients_in,
+    every_term,
+    fold,
+    largest_step,
+    parameters_in,
+)
 from bcre_ca.line.kernels import frozen, in_place, second_order, sweep
 
 BLOCK = 64
@@ -240,10 +250,15 @@ def follow(  # type: ignore[no-untyped-def]
     return max(span, 0.0)
 
 
-def march(h, R, K, steps, accounts, period_drop):  # type: ignore[no-untyped-def]
-    """``steps`` steps of many piles, shape (piles, N), one after the other."""
-    for pile in range(h.shape[0]):
-        fixed(h[pile], R[pile], K, steps, accounts[pile], period_drop)
+def march(h, R, piles, rows, K, steps, accounts, period_drops):  # type: ignore[no-untyped-def]
+    """``steps`` steps of some of many piles, shape (piles, N), one after the other.
+
+    Each has its own row of coefficients, with the same terms absent as in K, its own account, and
+    its own period drop, or None in the place of all.
+    """
+    for j in range(piles.size):
+        own, drop = coefficients_in(rows[j], K), _drop_of(period_drops, j)
+        fixed(h[piles[j]], R[piles[j]], own, steps, accounts[j], drop)
 
 
 def march_frozen(h, R, drop, K, steps, account, period_drop):  # type: ignore[no-untyped-def]
@@ -251,6 +266,15 @@ def march_frozen(h, R, drop, K, steps, account, period_drop):  # type: ignore[no
     frozen.march(h, R, drop, K, steps, account, period_drop)
 
 
-def bound(h, R, p, period_drop):  # type: ignore[no-untyped-def]
-    """The largest stable step of a whole pile."""
-    return stable_step(h, R, p, period_drop, True)
+def bounds(h, R, piles, rows, scheme, largest, period_drops):  # type: ignore[no-untyped-def]
+    """Fill in the largest stable steps of some of many piles, by their rows of parameters."""
+    for j in range(piles.size):
+        p, drop = parameters_in(rows[j], scheme), _drop_of(period_drops, j)
+        largest[j] = stable_step(h[piles[j]], R[piles[j]], p, drop, True)
+
+
+@register_jitable
+def _drop_of(period_drops, j):  # type: ignore[no-untyped-def]
+    if period_drops is None:
+        return None
+    return period_drops[j]
