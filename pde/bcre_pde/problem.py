@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,7 @@ class Problem:
     Parameters
     ----------
     initial: function of positions x, shape (N,), that returns h and R there, lengths.
-    material: the coefficients.
+    material: the coefficients; of a further model its own, which have an Sc.
     length: the domain is 0 <= x <= length, x running downhill; finite, > 0.
     ends: ``"open"`` (closed top, open foot), ``"wall"`` (closed top, a wall at the foot) or
         ``"periodic"`` (in h + Sc x and R).
@@ -44,7 +44,7 @@ class Problem:
     """
 
     initial: Callable[[Array], tuple[Array, Array]]
-    material: Material
+    material: Material | Any
     length: float
     ends: Ends = "open"
     sources: tuple[Source, ...] = ()

@@ -189,7 +189,10 @@ def test_models_are_listed_without_the_libraries_that_run_them():
         "print(sorted(heavy & set(sys.modules)))"
     )
     ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert ended.stdout.split("\n")[:2] == ["ca,pde,pde effective,height,aradian,hadeler-kuttler,hwa-kardar,quasi-static", "[]"]
+    assert ended.stdout.split("\n")[:2] == [
+        "ca,pde,pde effective,height,aradian,hadeler-kuttler,hwa-kardar,quasi-static",
+        "[]",
+    ]
 
 
 @pytest.mark.parametrize("name", MODELS)

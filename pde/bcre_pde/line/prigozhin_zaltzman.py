@@ -48,7 +48,7 @@ def settle(
     ends: see :class:`bcre_pde.Problem`.
     u_foot: h + Sc x on an open foot, which holds its height.
     """
-    x = (np.arange(g.size) + 0.5) * dx
+    x = np.asarray((np.arange(g.size) + 0.5) * dx)
     if ends == "periodic":
         u = g + Sc * x
         return float(u.mean()) - Sc * x, 0.0
@@ -84,7 +84,7 @@ def evolve(
     One implicit step from each time to the next; the first time is that of ``h``, which is shown
     as it is given.
     """
-    edges = dx * np.arange(h.size + 1)
+    edges = np.asarray(dx * np.arange(h.size + 1))
     shares = [(source, source.over(edges) / (source.rate or 1.0)) for source in sources]
     surfaces, left = [np.array(h, dtype=float)], [0.0]
     for now, then in itertools.pairwise(times):
