@@ -132,7 +132,7 @@ def thickest_layer(scene: Scene) -> float:
     h, R = scene.initial(x)
     u, thickest = h + scene.material.Sc * x, float(R.max())
     for source in scene.source:
-        span = max(min(scene.time.until, source.end) - source.start, 0.0)
+        span = max(min(scene.time.until, source.until) - source.start, 0.0)
         passing = source.width / scene.material.v if scene.material.v > 0 else span
         thickest += source.rate / source.width * min(span, passing)
     if x.size < 2:

@@ -181,7 +181,7 @@ def problem_of(scene: Scene) -> bcre_pde.Problem:
 def sources_of(scene: Scene) -> tuple[Source, ...]:
     """The scene's sources as ``bcre_pde`` takes them."""
     return tuple(
-        Source(source.rate, source.place, source.width, source.start, source.end)
+        Source(source.rate, source.place, source.width, source.start, source.until)
         for source in scene.source
     )
 
