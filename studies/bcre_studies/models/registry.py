@@ -155,7 +155,7 @@ SCHEMES = {
 }
 """The automaton in one scheme, with the largest stable step."""
 
-HEIGHT_ONLY = Model("height", _height_only, "height alone", "one_variable", "k", "D")
+HEIGHT_ONLY = Model("height alone", _height_only, "height alone", "one_variable", "k", "D")
 
 ARADIAN = Model("aradian", _aradian, "Aradian et al.", "aradian", "#7a4fa3", "p")
 HADELER_KUTTLER = Model(
