@@ -150,7 +150,11 @@ def test_summary_accounts_for_the_mass(bcre, tmp_path):
     ("scene", "options", "message"),
     [
         (HEAP, ["--model", "pde"], "automaton.flow = 'facet8': must be 'tilted' for --model pde"),
-        (SCENE, ["--model", "height"], "--model = 'height': must be 'ca', 'pde' or 'both'"),
+        (
+            SCENE,
+            ["--model", "height alone"],
+            "--model = 'height alone': must be 'ca', 'pde' or 'both'",
+        ),
         (SCENE, ["--set", "step=9.0"], "time.step = 9.0: "),
         (HEAP, ["--set", "source.0.place=[50.0, 4.0]"], "sources[0]: no cell that can hold sand"),
         (SCENE, ["--set", "cells_across=90000000"], "domain.width = 8.0: must be that of"),
