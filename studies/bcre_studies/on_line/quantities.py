@@ -28,6 +28,9 @@ LEAST_CELLS = 8
 PLACES = FRONT, REACH = "front of R at the end, x", "reach uphill of the pulse"
 """Where a profile passes a level; known to half a cell at best, because the profile is."""
 
+LAYER, LARGEST, LEFT = "R, mean", "largest R", "area of R left at the end"
+OF_LAYER = LAYER, LARGEST, LEFT, FRONT
+
 Measure = Callable[[Run], float]
 
 
@@ -51,10 +54,15 @@ class Quantity:
 
 
 def quantities(runs: Sequence[Run]) -> list[Quantity]:
-    """Everything that is said of one run or two of the same scene, the layers first."""
+    """What is said of one run or two of the same scene, the layers first.
+
+    A model without a rolling layer has none of its numbers.
+    """
     measures = _measures(runs[0].scene, min(run.x.size for run in runs))
     numbers = [_number(runs, *parts) for parts in measures]
-    return [*(_layer(runs, field) for field in "Rh"), *numbers]
+    found = [*(_layer(runs, field) for field in "Rh"), *numbers]
+    has_layer = any(run.R.any() for run in runs)
+    return [quantity for quantity in found if has_layer or quantity.name not in OF_LAYER]
 
 
 def _measures(scene: Scene, cells: int) -> list[tuple[str, str, Measure, bool]]:
@@ -62,8 +70,8 @@ def _measures(scene: Scene, cells: int) -> list[tuple[str, str, Measure, bool]]:
     length = scene.units.length if scene.units else ""
     area = f"{length}^2" if length else ""
     measures: list[tuple[str, str, Measure, bool]] = [
-        ("largest R", length, lambda run: float(run.R.max()), True),
-        ("area of R left at the end", area, lambda run: run.d * float(run.R[-1].sum()), True),
+        (LARGEST, length, lambda run: float(run.R.max()), True),
+        (LEFT, area, lambda run: run.d * float(run.R[-1].sum()), True),
     ]
     if scene.domain.ends != "periodic":
         measures.append(("area out through the foot", area, _out, False))
@@ -112,7 +120,7 @@ def _error(on_grids: list[float], run: Run) -> float:
 def _layer(runs: Sequence[Run], field: str) -> Quantity:
     """Mean of R over all frames, or mean change of h since the start."""
     unit = runs[0].units["h"] if runs[0].scene.units else ""
-    name = "R, mean" if field == "R" else "change of h, mean"
+    name = LAYER if field == "R" else "change of h, mean"
     last = runs[-1]
     x = runs[0].x
     profiles = [_profile(run, field, x) for run in runs]
