@@ -39,6 +39,9 @@ STUDIES = {
         "verification.modified_equation",
         "How much of the difference is the automaton's own diffusion?",
     ),
+    "agreement_map": Entry(
+        "validation.agreement_map.study", "Where in its parameters does the automaton agree?"
+    ),
     "printed_rule": Entry("validation.printed_rule", "The printed rule, read in every way"),
     "one_variable": Entry(
         "validation.one_variable", "Control: which properties need the second layer?"
