@@ -42,6 +42,9 @@ STUDIES = {
     "agreement_map": Entry(
         "validation.agreement_map.study", "Where in its parameters does the automaton agree?"
     ),
+    "avalanche_statistics": Entry(
+        "validation.avalanche_statistics.study", "Avalanches under slow driving: is there a scale?"
+    ),
     "printed_rule": Entry("validation.printed_rule", "The printed rule, read in every way"),
     "one_variable": Entry(
         "validation.one_variable", "Control: which properties need the second layer?"
