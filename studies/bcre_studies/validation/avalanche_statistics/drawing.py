@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 from matplotlib.axes import Axes
 
-from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE
+from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE, Look
 from bcre_studies.reporting import style
 
 if TYPE_CHECKING:
@@ -136,7 +136,7 @@ def _law(axis: Axes, sizes: pd.DataFrame, name: str, exponent: float, shade: str
 
 def _small(axis: Axes, small: pd.DataFrame) -> None:
     for shade, (length, rows) in zip(SHADES, small.groupby("length"), strict=True):
-        look = {"color": shade, "marker": "o", "linestyle": "", "markersize": 3}
+        look: Look = {"color": shade, "marker": "o", "linestyle": "", "markersize": 3}
         axis.plot(rows["predicted"], rows["measured"], label=f"L = {length}", **look)
     ends = [0, small["predicted"].max()]
     axis.plot(ends, ends, color="k", linewidth=0.9)
