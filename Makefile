@@ -3,7 +3,7 @@ SHELL := /bin/sh
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: help install reports speed maps test test-cluster faults bench check lint clean
+.PHONY: help install reports speed maps test test-cluster docs faults bench check lint clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-13s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -28,13 +28,21 @@ speed: install ## renew the committed record of speed (some minutes, on a quiet 
 maps: install ## the agreement map from 200,000 scenes (hours; SCHEDULER=tcp://host:port: on a cluster)
 	$(BIN)/python -c 'from bcre_studies.validation.agreement_map.fine import main; main()' $(if $(SCHEDULER),--scheduler $(SCHEDULER))
 
-test: install ## run the tests
+test: install ## run the tests; those of the page where Chromium is installed
+	@! command -v chromium >/dev/null || $(BIN)/python -c 'import playwright' 2>/dev/null \
+		|| $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --require-hashes -r requirements-browser.lock \
+		|| echo 'Playwright cannot be installed here: the page is not tried in a browser' >&2
 	$(BIN)/python -m pytest
 
 test-cluster: install ## run the sweeps' tests on a Dask scheduler with two workers on this machine
 	@$(BIN)/python -c 'import distributed' 2>/dev/null \
 		|| $(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-cluster.lock
 	$(BIN)/python -m pytest -n 0 -o python_files='cluster_*.py' -o 'pythonpath=tests/robustness tests/cluster' tests/cluster
+
+docs: install ## build the documentation, docs/_build/index.html; a warning is an error
+	@$(BIN)/python -c 'import furo, myst_parser, sphinx' 2>/dev/null \
+		|| $(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-docs.lock
+	$(BIN)/python -m sphinx -b html -q -W --keep-going docs docs/_build
 
 faults: install ## try every fault again and write reports/quality/faults.csv
 	$(BIN)/python tests/robustness/faults.py
@@ -54,5 +62,5 @@ lint: install ## ruff and mypy
 	$(BIN)/mypy
 
 clean: ## remove the environment, caches and everything that is built
-	rm -rf .venv .cache .mypy_cache .pytest_cache .ruff_cache .hypothesis out reports/local
+	rm -rf .venv .cache .mypy_cache .pytest_cache .ruff_cache .hypothesis docs/_build out reports/local
 	find ca pde studies tests -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -102,6 +102,13 @@ class Rule:
     ValueError
         naming the parameter, its value and what is allowed. Whether ``dt`` is stable depends on
         the state too; :func:`bcre_ca.evolve` judges it.
+
+    >>> rule = Rule(v=0.1, D=0.1, gamma=0.01, Sc=0.5, d=1.0, dt=0.4)
+    >>> round(rule.second_critical_slope(), 6), round(rule.effective_diffusion(), 6)
+    (2.215729, 0.148)
+    >>> Rule(v=-0.1, D=0.1, gamma=0.01, Sc=0.5, d=1.0, dt=0.4)
+    Traceback (most recent call last):
+    ValueError: v = -0.1: must be a finite number >= 0
     """
 
     v: float

@@ -49,6 +49,9 @@ def second_critical_excess(v: float, D: float, gamma: float, d: float) -> float:
     Growth at a fixed place is governed by the saddle of G on the positive axis: dG/dz = 0 at
     z0^2 = D/(D + v d), and G(z0) = 1 gives Sd. As d -> 0 this becomes v^2/(4 D gamma); the ratio of
     the two is 4 (sqrt(1 + Pe) - 1)^2/Pe^2 with the cell Peclet number Pe = v d/D.
+
+    >>> [round(second_critical_excess(0.1, 0.1, 0.01, d), 6) for d in (1.0, 0.25, 1e-6)]
+    [1.715729, 2.229124, 2.499999]
     """
     if gamma == 0:
         return math.inf
@@ -72,6 +75,9 @@ def uphill_front_speed(v: float, D: float, sigma: float, d: float, dt: float) ->
     ------
     ValueError
         where sigma <= 0: a layer that does not grow has no edge of constant speed.
+
+    >>> round(uphill_front_speed(v=0.1, D=0.1, sigma=0.01 * 2.1, d=1.0, dt=0.4), 4)
+    0.0105
     """
     if not sigma > 0:
         raise ValueError(f"sigma = {sigma!r}: a front needs growth, gamma (S - Sc) > 0")
@@ -105,6 +111,11 @@ def max_stable_step(
     ----------
     largest_R: largest rolling layer, a length.
     deficit: largest max(Sc - S, 0), a slope.
+
+    >>> round(max_stable_step(v=2.5, D=0.1, gamma=0.01, d=1.0), 6)
+    0.37037
+    >>> round(max_stable_step(v=0.1, D=0.1, gamma=0.01, d=1.0, largest_R=100), 6)
+    1.0
     """
     upwind = Parameters(v, D, gamma, 0.0, d)
     return float(largest_step(upwind, largest_R, gamma * deficit))
@@ -115,6 +126,9 @@ def effective_diffusion(v: float, D: float, d: float, dt: float) -> float:
 
     Taylor expansion of the first-order upwind flux gives +v d/2, that of the Euler step
     -v^2 dt/2 (Warming and Hyett 1974, for this rule).
+
+    >>> round(effective_diffusion(v=2.5, D=0.1, d=1.0, dt=0.2), 6)
+    0.725
     """
     return D + v * d / 2 * (1 - v * dt / d)
 

@@ -38,11 +38,12 @@ class BoundedRungeKutta(RungeKuttaSolver):  # type: ignore[misc]
 
     def _make_single_step_error_estimate(self, state: FieldCollection) -> Callable[..., Any]:
         step = Step(self.pde, FEHLBERG)
-        new, error, nothing = (np.zeros_like(state.data) for _ in range(3))
+        start, new, error, nothing = (np.zeros(state.data.shape) for _ in range(4))
         add = self.pde.weighted_sum
 
         def relative_single_step(data: Array, t: float, dt: float) -> tuple[Array, float]:
-            step(data, t, dt, new)
+            np.copyto(start, data)  # py-pde's data lie between ghost cells, with gaps
+            step(start, t, dt, new)
             add(nothing, step.increments, FEHLBERG_ERROR, FEHLBERG_ERROR.size, 1.0, error)
             return new, float(np.abs(error, out=error).max()) / layer_scale(new[1])
 

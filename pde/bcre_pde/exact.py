@@ -180,7 +180,11 @@ def climbing_hump(
 
 
 def breaking_time(steepest_rise: float, gamma: float) -> float:
-    """t* = 1/(gamma max R0'): when the climbing wave becomes vertical."""
+    """t* = 1/(gamma max R0'): when the climbing wave becomes vertical.
+
+    >>> breaking_time(steepest_rise=0.2, gamma=0.5)
+    10.0
+    """
     return 1 / (gamma * steepest_rise) if steepest_rise > 0 else math.inf
 
 

@@ -35,10 +35,10 @@ def failed(equation: Marched, method: str, reason: str = "") -> SolveError:
     """
     layers, rates = equation.last_layers, np.zeros_like(equation.last_layers)
     equation.rate(layers, rates)
+    names = equation.fields
+    changes = tuple(f"d{name}/dt" for name in names)
     cell, what = (
-        _not_finite(layers, ("u", "R"))
-        or _not_finite(rates, ("du/dt", "dR/dt"))
-        or (_fastest(rates))
+        _not_finite(layers, names) or _not_finite(rates, changes) or _fastest(rates, changes)
     )
     number, place = equation.cell(cell), equation.place(cell)
     where = f"{what} in cell {number} ({place}) at t = {equation.last_time:.6g}"
@@ -46,7 +46,7 @@ def failed(equation: Marched, method: str, reason: str = "") -> SolveError:
     return SolveError(f"{method} gave up: {because}{where}", equation.last_time, number)
 
 
-def _not_finite(rows: Array, names: tuple[str, str]) -> tuple[int, str] | None:
+def _not_finite(rows: Array, names: tuple[str, ...]) -> tuple[int, str] | None:
     bad = ~np.isfinite(rows)
     bad[0, -1] |= bad[2].any(axis=0)  # u on the foot and the outflow belong to the last cell
     surface, layer = bad[0].ravel(), bad[1].ravel()
@@ -57,8 +57,7 @@ def _not_finite(rows: Array, names: tuple[str, str]) -> tuple[int, str] | None:
     return cell, f"{names[0] if surface[cell] else names[1]} is not finite"
 
 
-def _fastest(rates: Array) -> tuple[int, str]:
+def _fastest(rates: Array, names: tuple[str, ...]) -> tuple[int, str]:
     flat = rates[:2].reshape(2, -1)
     row, cell = np.unravel_index(np.argmax(np.abs(flat)), flat.shape)
-    name = ("du/dt", "dR/dt")[row]
-    return int(cell), f"the layers change fastest, {name} = {flat[row, cell]:.3g},"
+    return int(cell), f"the layers change fastest, {names[row]} = {flat[row, cell]:.3g},"

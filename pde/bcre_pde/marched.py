@@ -25,6 +25,8 @@ class Marched(PDEBase):  # type: ignore[misc]
     """
 
     explicit_time_dependence = False
+    fields = ("u", "R")
+    """What the first two are called."""
     weighted_sum = staticmethod(sums.weighted_sum)
     """How the stages of a Runge-Kutta step are summed."""
 

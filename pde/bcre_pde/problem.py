@@ -5,12 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bcre_pde.material import Material
+
+if TYPE_CHECKING:
+    from pde import FieldCollection, MemoryStorage
 
 Array = NDArray[np.float64]
 Ends = Literal["open", "periodic"]
@@ -76,6 +79,30 @@ class Solution:
     def u(self) -> Array:
         """Height above the repose line, h + Sc x, shape (T, N)."""
         return self.h + self.problem.material.Sc * self.x
+
+    def field(self, frame: int = -1) -> FieldCollection:
+        """h and R of one frame as py-pde's fields of these names on a Cartesian grid.
+
+        >>> import numpy as np, bcre_pde
+        >>> still = lambda x: (-0.5 * x, np.zeros_like(x))
+        >>> material = bcre_pde.Material(v=1.0, D=0.1, gamma=0.1, Sc=0.5)
+        >>> problem = bcre_pde.Problem(still, material, length=10.0)
+        >>> solution = bcre_pde.solve(problem, times=[0, 1], cells=8)
+        >>> solution.field().labels, solution.field()["R"].grid.shape
+        (['h', 'R'], (8,))
+        """
+        from pde import CartesianGrid, FieldCollection, ScalarField
+
+        periodic = self.problem.ends == "periodic"
+        grid = CartesianGrid([[0, self.problem.length]], self.x.size, periodic=periodic)
+        layers = {"h": self.h[frame], "R": self.R[frame]}
+        return FieldCollection([ScalarField(grid, row, label=name) for name, row in layers.items()])
+
+    def storage(self) -> MemoryStorage:
+        """All frames as py-pde's storage, for its plots, films and files."""
+        from pde import MemoryStorage
+
+        return MemoryStorage.from_fields(self.t, [self.field(k) for k in range(self.t.size)])
 
     def mass(self) -> Array:
         """Area of sand in the domain at every time, shape (T,)."""

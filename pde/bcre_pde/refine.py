@@ -47,6 +47,10 @@ def grid_convergence_index(
     ----------
     fine, medium, coarse: the quantity on the three grids, numbers or arrays of one shape.
     ratio: refinement ratio, > 1.
+
+    >>> found = grid_convergence_index(fine=1.01, medium=1.04, coarse=1.16)
+    >>> round(found.order, 6), round(found.error, 6)
+    (2.0, 0.0125)
     """
     values = [np.asarray(value, dtype=float) for value in (fine, medium, coarse)]
     last = float(np.mean(np.abs(values[1] - values[0])))

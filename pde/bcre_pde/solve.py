@@ -57,7 +57,7 @@ def solve(
         where the solver gave up, or would evaluate the right-hand side more often than
         ``MOST_EVALUATIONS``; ValueError for arguments that are not allowed.
     """
-    times = _ascending(times)
+    times = ascending(times)
     if method not in get_args(Method):
         raise ValueError(f"method = {method!r}: must be one of {get_args(Method)}")
     if not 0 < tolerance < 1:
@@ -132,7 +132,8 @@ def _initial_state(
     return equation.state(grid, h + Sc * x, R, float(h_foot[0]) + Sc * problem.length)
 
 
-def _ascending(times: Sequence[float]) -> list[float]:
+def ascending(times: Sequence[float]) -> list[float]:
+    """The times as numbers, refused unless they ascend from 0 or later."""
     ordered = [float(t) for t in times]
     if not ordered or ordered[0] < 0 or not all(map(math.isfinite, ordered)):
         raise ValueError(f"times = {ordered!r}: must be finite, >= 0 and not empty")

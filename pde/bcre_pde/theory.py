@@ -25,6 +25,9 @@ def second_critical_slope(v: float, D: float, gamma: float, Sc: float) -> float:
     """Sd = Sc + v^2/(4 D gamma): above it a frozen slope grows R at every fixed place.
 
     Infinite where D or gamma is zero (but v is not): everything is then carried away first.
+
+    >>> second_critical_slope(v=1.0, D=1.0, gamma=0.5, Sc=0.5)
+    1.0
     """
     if v == 0:
         return Sc
@@ -71,6 +74,9 @@ def scarp_speed(v: float, gamma: float, H: float) -> float:
     Ahead of the scarp R = 0, behind it R* and u lower by H. Mass: the eroded c H equals the growth
     c R* of the rolling layer plus what it carries away, v R*; the climb is c = gamma R*. So
     R* = H - v/gamma.
+
+    >>> scarp_speed(v=1.0, gamma=0.5, H=10.0)
+    4.0
     """
     return gamma * H - v
 

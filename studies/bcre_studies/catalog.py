@@ -23,17 +23,20 @@ class Entry(NamedTuple):
 
 
 STUDIES = {
-    "paper_figures": Entry("validation.paper_figures", "The paper's figures in both models"),
+    "paper_figures": Entry("validation.paper_figures.study", "The paper's figures in both models"),
     "repose_return": Entry("validation.repose_return.study", "Return to the angle of repose"),
-    "roughness_decay": Entry("validation.roughness_decay", "Decay of roughness, mode by mode"),
+    "roughness_decay": Entry("validation.roughness_decay.study", "Decay of roughness by mode"),
     "random_roughness": Entry(
         "validation.random_roughness", "Decay of random roughness over 32 seeds"
     ),
     "uphill_propagation": Entry(
-        "validation.uphill_propagation", "Uphill propagation, one mechanism at a time"
+        "validation.uphill_propagation.study", "Uphill propagation, one mechanism at a time"
     ),
     "second_critical_angle": Entry(
         "validation.second_critical_angle.study", "The second critical angle"
+    ),
+    "avalanche_extent": Entry(
+        "validation.avalanche_extent", "What an avalanche moves: how much, how far, and when"
     ),
     "modified_equation": Entry(
         "verification.modified_equation",
@@ -45,7 +48,7 @@ STUDIES = {
     "avalanche_statistics": Entry(
         "validation.avalanche_statistics.study", "Avalanches under slow driving: is there a scale?"
     ),
-    "printed_rule": Entry("validation.printed_rule", "The printed rule, read in every way"),
+    "printed_rule": Entry("validation.printed_rule.study", "The printed rule, read in every way"),
     "one_variable": Entry(
         "validation.one_variable", "Control: which properties need the second layer?"
     ),

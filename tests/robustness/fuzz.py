@@ -16,7 +16,7 @@ kappa = 0.01
 Sc = 0.4
 [domain]
 length = 20.0
-cells = 20
+cells = 96
 ends = "open"
 [time]
 until = 1.0
@@ -44,7 +44,7 @@ width = 3.0
 kind = "table"
 file = "start.csv"
 [solver]
-cells = 16
+cells = 96
 method = "runge-kutta"
 tolerance = 1e-4
 """

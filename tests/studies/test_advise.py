@@ -13,13 +13,14 @@ from bcre_studies.advisor.advise import Effort, advise
 from bcre_studies.advisor.candidate import SAFETY, Candidate, Pilot
 from bcre_studies.advisor.closed_forms import closed_form
 from bcre_studies.advisor.deviation import OBSERVABLES, deviation, posed, uncertainty
-from bcre_studies.advisor.pilot import Allowance, PilotError, reference, run_model, sees_start
+from bcre_studies.advisor.pilot import Allowance, PilotError, coarsest, reference, run_model
 from bcre_studies.advisor.question import Question, seconds_of
 from bcre_studies.advisor.scene_text import scene_text
 from bcre_studies.cli import app
 from bcre_studies.models.run import frame_times
 from bcre_studies.performance import advice as study
 from bcre_studies.performance.random_scenes import random_scene
+from bcre_studies.running.place import Origin
 from bcre_studies.running.run import run_scene
 from bcre_studies.scenes.scene import load
 from bcre_studies.timing.costs import recorded
@@ -150,9 +151,10 @@ def test_with_kappa_the_scarp_is_resolved_and_upwind_is_not_foretold():
 
 
 def test_a_pulse_between_the_cells_of_every_pilot_is_not_taken_for_nothing():
-    thin = load("figure2").with_changes(**{"rolling.0.width": 0.01})
-    assert not sees_start(thin, 1600)
-    assert sees_start(load("figure2"), 100)
+    thin = load("figure2").with_changes(cells=10_000, **{"rolling.0.width": 0.01})
+    assert [coarsest(load(name)) for name in ("figure2", "figure1", "rough_slope")] == [25, 50, 100]
+    with pytest.raises(PilotError, match="wider than parts of the start"):
+        coarsest(load("rough_slope"), finest=200)
     advice = advise(Question(thin), counted())
     assert not advice.options
     assert "wider than parts of the start" in advice.why
@@ -247,7 +249,7 @@ def test_a_scene_written_elsewhere_is_the_same_scene(tmp_path):
     scene = load("climbing_wave").with_changes(title='a "quoted" \x7f title', kappa=1e-5)
     path = tmp_path / "far" / "scene.toml"
     path.parent.mkdir()
-    path.write_text(scene_text(scene, path.parent, "a comment"), encoding="utf-8")
+    path.write_text(scene_text(scene, path.parent, "# a comment"), encoding="utf-8")
     again = load(path)
     x = scene.centres(77)
     assert (np.array(again.initial(x)) == np.array(scene.initial(x))).all()
@@ -256,7 +258,7 @@ def test_a_scene_written_elsewhere_is_the_same_scene(tmp_path):
 
 def test_what_is_written_runs_as_foretold(tmp_path):
     path = tmp_path / "advised.toml"
-    text = answer(Question(load("climbing_wave"), 0.01, frames=3), "wave", path)
+    text = answer(Question(load("climbing_wave"), 0.01, frames=3), Origin("climbing_wave"), path)
     assert "recommended:" in text
     assert f"bcre run {path} --model" in text
     advised = load(path)
@@ -303,7 +305,7 @@ def test_the_command_says_and_writes_what_is_advised(tmp_path):
 
 def test_the_command_says_that_nothing_can_be_advised_and_writes_nothing(tmp_path):
     path = tmp_path / "x.toml"
-    thin = ["--set", "rolling.0.width=0.01"]
+    thin = ["--set", "rolling.0.width=0.01", "--set", "cells=10000"]
     done = CliRunner().invoke(app, ["advise", "figure2", *thin, "--out", str(path)])
     assert done.exit_code == 0
     assert "unresolved:" in done.output

@@ -55,6 +55,11 @@ BOTH = {
     "mass_error",
     "R_min",
     "R_max",
+    "scene",
+    "title",
+    "changes",
+    "version",
+    "seed",
 }
 SHORT = ("--set", "until=2", "--frames", "3")
 
@@ -204,7 +209,7 @@ def test_pde_alone_is_refined_to_a_thousandth_and_beside_the_automaton_to_a_tent
 
 
 def test_pde_alone_refines_a_narrow_pulse_further_than_three_grids(bcre):
-    narrow = ["--set", "rolling.0.width=0.7", "--model", "pde"]
+    narrow = ["--set", "rolling.0.width=1", "--set", "D=0.01", "--model", "pde"]
     bcre("run", "figure2", *narrow, *SHORT, "--out", "o")
     summary = results()[1]["pde"]
     assert summary["cells"] > 400
@@ -221,9 +226,9 @@ def test_error_estimate_covers_the_distance_from_a_much_finer_grid(bcre):
 
 
 def test_pde_on_a_grid_too_small_to_coarsen_says_that_its_error_is_unknown(bcre):
-    bcre("run", "figure2", "--model", "pde", *SHORT, "--out", "o", "--set", "solver.cells=16")
+    bcre("run", "figure2", "--model", "pde", *SHORT, "--out", "o", "--set", "solver.cells=25")
     _, summary = results()
-    assert summary["pde"]["cells"] == 16
+    assert summary["pde"]["cells"] == 25
     assert summary["pde"]["error_estimate"] is None
 
 

@@ -111,7 +111,7 @@ def test_pde_is_on_the_climbing_wave_to_a_millionth_at_400_cells(run, name):
 
 
 @pytest.mark.parametrize("name", WAVES)
-@pytest.mark.parametrize("cells", [40, 80, 160])
+@pytest.mark.parametrize("cells", [48, 96, 160])
 def test_pde_is_as_near_to_the_climbing_wave_as_its_error_estimate_says(run, name, cells):
     values, layers, _ = wave(name)
     grid = ["--set", f"solver.cells={cells}"]

@@ -158,7 +158,7 @@ def test_results_do_not_depend_on_the_number_of_workers(monkeypatch, workers):
 
 def test_label_with_markup_is_text_in_the_progress_bar(capsys, one_worker):
     parallel.each(hex, range(3), "[bold]x[/bold] [/]")
-    assert "[bold]x[/bold] [/]" in capsys.readouterr().out
+    assert "[bold]x[/bold] [/]" in capsys.readouterr().err
 
 
 # Two runs at once

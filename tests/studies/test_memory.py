@@ -23,11 +23,12 @@ CASES = [
 MEASURE = """
 import gc, json, sys
 from pathlib import Path
+from bcre_studies.running.place import Origin
 from bcre_studies.running.run import run_scene, write_run
 from bcre_studies.scenes.scene import load
 
 def run(model, frames, changes):
-    write_run(run_scene(load("figure2", changes), model, frames), Path("out"))
+    write_run(run_scene(load("figure2", changes), model, frames), Path("out"), Origin("figure2"))
 
 def peak():
     status = Path("/proc/self/status").read_text().splitlines()
@@ -42,7 +43,7 @@ def growth(case):
     return peak() - before
 
 for method in ("runge-kutta", "BDF"):  # the compiler takes more memory than a run
-    run("both", 2, ["until=0.001", "cells=10", "solver.cells=32", f"method={method}"])
+    run("both", 2, ["until=0.001", "cells=25", "solver.cells=32", f"method={method}"])
 print(json.dumps([growth(case) for case in json.loads(sys.argv[1])]))
 """
 

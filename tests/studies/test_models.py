@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import bcre_ca
 import bcre_pde
@@ -18,7 +19,7 @@ from bcre_studies.models.automaton import rule_of
 from bcre_studies.models.bcre import problem_of
 from bcre_studies.models.effective import effective
 from bcre_studies.models.registry import AUTOMATON, BCRE, MODELS
-from bcre_studies.models.run import frame_times, profiles
+from bcre_studies.models.run import frame_times
 from bcre_studies.scenes.scene import load
 
 
@@ -80,14 +81,37 @@ def test_mass_error_is_what_is_missing_relative_to_the_start():
     assert short.mass_error() == pytest.approx(0.1 * run.d * run.R[1].sum() / scale, rel=1e-9)
 
 
-def test_profiles_are_one_row_a_time_and_cell():
+def test_dataframe_has_one_row_for_each_time_and_cell():
     run = AUTOMATON.run(figure_2(), [0.0, 2.0, 4.0])
-    table = profiles(run, model="ca")
-    assert list(table.columns) == ["model", "t", "x", "h", "R"]
+    table = run.to_dataframe(figure="2")
+    assert list(table.columns) == ["figure", "model", "t", "x", "h", "R"]
     assert len(table) == 300
+    assert set(table["model"]) == {AUTOMATON.name}
+    assert table.attrs["units"] == {"t": "time", "x": "length", "h": "length", "R": "length"}
     last = table[table["t"] == 4.0]
     assert np.array_equal(last["R"], run.R[-1])
     assert np.array_equal(last["x"], run.x)
+
+
+@pytest.mark.parametrize("model", [AUTOMATON, BCRE], ids=lambda model: model.name)
+def test_dataset_holds_the_run_with_its_units_and_survives_a_file(model, tmp_path):
+    run = model.run(figure_2(), [0.0, 4.0])
+    path = tmp_path / "run.nc"
+    run.to_xarray().to_netcdf(path, engine="scipy")
+    with xr.open_dataset(path, engine="scipy") as data:
+        assert np.array_equal(data.R, run.R)
+        assert np.array_equal(data.h.sel(t=4.0), run.h[1])
+        assert np.array_equal(data.x, run.x)
+        assert np.array_equal(data.outflow, run.outflow)
+        area = run.d * (data.h + data.R).sum("x") + data.outflow
+        assert float(area[1]) == pytest.approx(float(area[0]), rel=1e-12)
+        assert data.outflow.attrs["units"] == "length^2"
+        assert all({"units", "long_name"} <= set(data[name].attrs) for name in data.variables)
+        assert (data.attrs["model"], data.attrs["gamma"], data.attrs["d"]) == (
+            model.name,
+            0.01,
+            run.d,
+        )
 
 
 def test_problem_of_a_scene_carries_its_material():

@@ -92,7 +92,9 @@ def made_up(**changes):
     for scene in ("figure2", "figure3", "pulse_at_repose", "rough_slope", "climbing_wave"):
         for split, cells, steps in study.SPLITS:
             row = {"scene": scene, "split": split, "d": 1 / cells, "dt": 0.4 / steps}
-            row |= {"nominal": 0.5, "D_eff": 0.01, "kappa_eff": 0.5, "both": 0.01 / steps}
+            alone = (0.4, 0.01) if scene == "rough_slope" else (0.01, 0.5)
+            row |= dict(zip(("D_eff", "kappa_eff"), alone, strict=True))
+            row |= {"nominal": 0.5, "both": 0.01 / steps}
             row |= {"explained": 0.98, "verdict": str(Verdict.EXPLAINED)}
             rows.append(row | (changes if scene == changes.get("scene", "figure2") else {}))
     return {"comparison": pd.DataFrame(rows)}
@@ -106,10 +108,16 @@ def test_every_claim_can_fail():
     assert verdicts() == [True, True, True, True]
     assert verdicts(explained=0.89) == [False, False, True, True]
     assert verdicts(D_eff=0.2) == [True, True, False, True]
+    assert verdicts(scene="rough_slope", kappa_eff=0.3) == [True, True, False, True]
     assert verdicts(scene="climbing_wave", both=0.01) == [True, True, True, False]
 
 
-def test_what_is_unresolved_explains_nothing_and_refutes_nothing():
-    claims = study.judge(made_up(explained=0.1, verdict=str(Verdict.UNRESOLVED)))
-    assert claims[0].verdict is Verdict.AGREE
-    assert "3 of 15 rows are unresolved" in claims[0].evidence
+def test_what_is_unresolved_is_neither_dropped_nor_held_against_the_coefficients():
+    tables = made_up(explained=0.1, verdict=str(Verdict.UNRESOLVED))
+    in_space, in_time = study.judge(tables)[:2]
+    assert in_space.verdict is in_time.verdict is Verdict.UNRESOLVED
+    assert "3 of 15 rows are unresolved (figure2)" in in_space.evidence
+    assert "unresolved" not in study.judge(made_up())[0].evidence
+    worse = study.judge(made_up(scene="figure3", explained=0.1))[0]
+    assert worse.verdict is Verdict.DISAGREE
+    assert "less than 90% in 3 of 15 rows (figure3)" in worse.evidence

@@ -5,7 +5,6 @@ import os
 import shutil
 import subprocess
 import sys
-from dataclasses import replace
 from importlib.machinery import ModuleSpec
 from pathlib import Path
 from types import ModuleType
@@ -66,6 +65,12 @@ def claim(name, verdict, evidence="1 < 2", statement="It holds."):
     return Claim(name, statement, verdict, evidence, "a tenth: made up")
 
 
+def pages_of_titles(findings, decided, folder):
+    """In place of the report's pages, which tell of the real studies (``tests/page``)."""
+    for name in ("README.md", "index.html"):
+        replace_text(folder / name, "".join(finding.title for finding in findings))
+
+
 @pytest.fixture
 def fake(places, monkeypatch):
     """The only study there is."""
@@ -75,6 +80,7 @@ def fake(places, monkeypatch):
     for place in (catalog, finding, store, write):
         monkeypatch.setattr(place, "STUDIES", studies)
     monkeypatch.setattr(write, "PAPER_CLAIMS", ())
+    monkeypatch.setattr(write, "write_pages", pages_of_titles)
     return module
 
 
@@ -249,29 +255,10 @@ def test_text_is_written_as_utf_8_with_its_line_ends(tmp_path):
 # Texts and tables
 
 
-def test_markup_in_the_texts_of_a_finding_is_text_on_the_page(fake, places):
-    attack = "<script>alert(1)</script>"
-    table = pd.DataFrame({f"{attack}": [attack], "b": ['"><img src=x onerror=alert(1)>']})
-    fake.claims = [claim("a", Verdict.AGREE, attack, attack)]
-    found = replace(finding.find("fake"), tables={"comparison": table}, title=attack, text=attack)
-    write.write_index([found])
-    page = (places / "reports/index.html").read_text(encoding="utf-8")
-    assert "<script" not in page
-    assert "<img src=x" not in page
-    assert page.count("&lt;script&gt;") >= 6
-    assert page.count('<h2 id="fake"') == 1
-
-
-def test_cell_or_statement_with_a_bar_stays_one_cell_of_its_markdown_table(fake, places):
+def test_cell_with_a_bar_stays_one_cell_of_its_markdown_table(fake):
     rows = finding.find("fake").comparison.splitlines()
     bars = {row.replace(r"\|", "").count("|") for row in rows}
     assert bars == {5}
-    fake.claims = [claim("a", Verdict.AGREE, statement="It erodes at |Sc|.")]
-    write.write_all()
-    index = (places / "reports/README.md").read_text(encoding="utf-8")
-    (row,) = (line for line in index.splitlines() if line.startswith("| [fake]"))
-    assert row.replace(r"\|", "").count("|") == 3 + len(Verdict)
-    assert r"\|Sc\|" in row
 
 
 def test_numbers_are_shown_short_and_gaps_empty():
@@ -314,10 +301,6 @@ def test_quality_checks_leave_the_verdict_matrix_but_are_still_checked(fake, bcr
         for name in ("verdicts.csv", "quality/verdicts.csv")
     )
     assert (verdicts, checks) == (["first", "second"], ["code"])
-    index = (places / "reports/README.md").read_text(encoding="utf-8")
-    matrix, quality = index.split("## Quality checks")
-    assert "It compiles." not in matrix
-    assert "| It compiles. | agree |" in quality
     fake.claims[-1] = quality_check("code", "It compiles.", Verdict.DISAGREE, "0 of 1", "none")
     code, out, _ = bcre("check")
     assert code == 1

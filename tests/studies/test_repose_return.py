@@ -7,15 +7,15 @@ from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.effective import effective as effective_scene
 from bcre_studies.models.registry import AUTOMATON, BCRE
 from bcre_studies.observables.outcome import slope
+from bcre_studies.validation.repose_return import repeated_pulses
 from bcre_studies.validation.repose_return import study as repose_return
+from bcre_studies.validation.repose_return.pulses import FAST, REPEATED, SLOW, scene_of
 from bcre_studies.validation.repose_return.repeated_pulses import slopes_of_automaton, slopes_of_pde
-from bcre_studies.validation.repose_return.study import (
-    FAST,
-    SLOW,
+from bcre_studies.validation.repose_return.thin_pulse import (
     closed_form,
-    scene_of,
+    second_critical,
+    slope_after_thin_pulse,
 )
-from bcre_studies.validation.repose_return.thin_pulse import slope_after_thin_pulse
 
 
 def final_slopes(scene, cells=100):
@@ -92,20 +92,30 @@ def test_the_first_of_repeated_pulses_is_a_single_one():
 
 
 def test_the_closed_form_is_repose_above_Sd_and_silent_on_thick_pulses():
-    assert closed_form(scene_of(SLOW, 1.8, 1.0), 1.0) == 0
-    assert closed_form(scene_of(SLOW, 2.6, 1.0), 0.0) == 0
-    assert pd.isna(closed_form(scene_of(SLOW, 1.8, 1.0), 0.0))
-    assert pd.isna(closed_form(scene_of(SLOW, 0.1, 10.0), 1.0))
+    def form(excess, pulse, d):
+        return closed_form(scene_of(SLOW, excess, pulse), second_critical(SLOW, d), d)
+
+    assert form(1.8, 1.0, 1.0) == 0
+    assert form(2.6, 1.0, 0.0) == 0
+    assert pd.isna(form(1.8, 1.0, 0.0))
+    assert pd.isna(form(0.1, 10.0, 1.0))
 
 
-def test_the_verdicts_turn_when_slopes_above_repose_return():
-    kept = _table([0.1, 0.31])
-    returned = _table([0.0, 0.0])
-    halfway = _table([0.05, 0.31])
-    printed, all_or_nothing = (repose_return.judge(kept)[i].verdict for i in (0, 1))
-    assert (printed, all_or_nothing) == (Verdict.DISAGREE, Verdict.AGREE)
-    assert repose_return.judge(returned)[0].verdict is Verdict.AGREE
-    assert repose_return.judge(halfway)[1].verdict is Verdict.DISAGREE
+@pytest.mark.parametrize(
+    ("finals", "printed", "all_or_nothing"),
+    [
+        ([0.1, 0.31], Verdict.DISAGREE, Verdict.AGREE),
+        ([0.0, 0.0], Verdict.AGREE, Verdict.AGREE),
+        ([0.05, 0.31], Verdict.DISAGREE, Verdict.DISAGREE),
+        ([0.1, 1.7], Verdict.DISAGREE, Verdict.AGREE),
+        ([0.1, 1.72], Verdict.DISAGREE, Verdict.DISAGREE),
+    ],
+)
+def test_the_verdicts_turn_when_slopes_return_stop_half_way_or_pass_Sd(
+    finals, printed, all_or_nothing
+):
+    verdicts = [claim.verdict for claim in repose_return.judge(_table(finals))[:2]]
+    assert verdicts == [printed, all_or_nothing]
 
 
 def _table(finals):
@@ -121,10 +131,10 @@ def _table(finals):
     extra = {"pde_effective": 0.0, "automaton_theory": 0.0, "pde_theory": 0.0, "verdict": "agree"}
     points = [
         {"S0 - Sc": excess, "pulse": pulse, "pulses": n, "model": model, "S - Sc": 0.0}
-        for excess, pulse in repose_return.SEQUENCES
-        for n in range(1, repose_return.RELEASES + 1)
+        for excess, pulse in repeated_pulses.SEQUENCES
+        for n in range(1, repeated_pulses.RELEASES + 1)
         for model in ("ca", "pde")
     ]
-    many = {**rows[0], **extra, "case": repose_return.REPEATED, "pulses": 1}
+    many = {**rows[0], **extra, "case": REPEATED, "pulses": 1}
     comparison = pd.DataFrame([{**row, **extra, "pulses": 1} for row in rows] + [many])
     return {"comparison": comparison, "repeated": pd.DataFrame(points)}

@@ -9,7 +9,8 @@ from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON, BCRE
 from bcre_studies.observables import fronts
 from bcre_studies.scenes.scene import load
-from bcre_studies.validation import roughness_decay
+from bcre_studies.validation.roughness_decay import study as roughness_decay
+from bcre_studies.validation.roughness_decay.modes import R_DECAY, mode_rows
 
 R0, GAMMA, SPAN = 7.3, 0.023, 8.0
 
@@ -61,10 +62,10 @@ def test_kappa_eff_is_half_a_cell_of_gamma_less_the_courant_number():
 
 
 def test_modes_of_the_rolling_layer_decay_at_their_closed_forms():
-    rows = roughness_decay._modes(("R", 0.625))
+    rows = mode_rows(("R", 0.625))
     assert {row["quantity"] for row in rows} == {"decay rate of R", "downhill speed of R"}
     for row in rows:
-        k, decay = row["k"], row["quantity"] == roughness_decay.R_DECAY
+        k, decay = row["k"], row["quantity"] == R_DECAY
         assert row["automaton"] == pytest.approx(row["automaton_theory"], rel=1e-3)
         assert row["pde"] == pytest.approx(0.1 * k**2 if decay else 0.1, rel=2e-3)
         effective = (0.1 + 0.1 * 0.625 / 2 * (1 - 0.1)) * k**2 if decay else 0.1
@@ -72,7 +73,7 @@ def test_modes_of_the_rolling_layer_decay_at_their_closed_forms():
 
 
 def test_finer_cells_smooth_the_surface_less():
-    coarse, fine = (roughness_decay._modes(("u", d))[3]["automaton"] for d in (1.0, 0.25))
+    coarse, fine = (mode_rows(("u", d))[3]["automaton"] for d in (1.0, 0.25))
     assert fine == pytest.approx(coarse / 4, rel=0.05)
 
 

@@ -13,7 +13,8 @@ from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE
 from bcre_studies.observables import fronts
 from bcre_studies.scenes.scene import load
-from bcre_studies.validation import uphill_propagation
+from bcre_studies.validation.uphill_propagation import mechanisms
+from bcre_studies.validation.uphill_propagation import study as uphill_propagation
 
 V, D, GAMMA = 0.17, 0.23, 0.021
 TIMES = [150.0, 300.0, 600.0]
@@ -57,7 +58,7 @@ def test_between_the_two_critical_slopes_only_the_automaton_climbs():
 
 
 def test_the_surface_wave_climbs_at_gamma_R0_in_both_models():
-    (row,) = uphill_propagation.wave(0.5, 7.0)
+    (row,) = mechanisms.wave(0.5, 7.0)
     assert row["pde"] == pytest.approx(0.07, rel=1e-4)
     assert row["automaton"] == pytest.approx(0.07, rel=0.01)
     assert row["automaton"] == pytest.approx(row["automaton_theory"], rel=1e-4)
@@ -77,7 +78,7 @@ def test_the_automatons_scarp_is_as_fast_as_that_of_bcre_with_its_own_coefficien
 
 
 def test_the_reach_of_figure_3_is_that_of_a_drifting_gaussian():
-    rolling, surface = uphill_propagation.reach(0.5)
+    rolling, surface = mechanisms.reach(0.5)
     scene = load("figure3")
     width, spread = 4.0, math.sqrt(16 + 4 * 0.1 * 10)
     expected = -25 + (spread - width) * math.sqrt(math.log(100))
@@ -87,13 +88,13 @@ def test_the_reach_of_figure_3_is_that_of_a_drifting_gaussian():
         assert row["automaton"] == pytest.approx(row["automaton_theory"], abs=0.1)
         assert row["pde"] == pytest.approx(row["pde_theory"], abs=0.02)
     (pulse,) = scene.rolling
-    assert pulse.width == uphill_propagation.PULSE_WIDTH
+    assert pulse.width == mechanisms.PULSE_WIDTH
     (incline,) = scene.surface
-    assert incline.slope - scene.material.Sc == pytest.approx(uphill_propagation.FIGURE3_EXCESS)
+    assert incline.slope - scene.material.Sc == pytest.approx(mechanisms.FIGURE3_EXCESS)
 
 
 def test_nothing_in_figure_3_climbs_above_the_pulses_own_edge():
-    for row in uphill_propagation.reach(1.0):
+    for row in mechanisms.reach(1.0):
         for model in ("automaton", "pde", "pde_effective"):
             assert row[model] < 0
 
@@ -102,8 +103,8 @@ def a_table():
     """A table in which all agree, to be spoilt."""
     rows = [
         {"quantity": quantity, "d": d, "value": value, "automaton": 1.0, "automaton_theory": 1.0}
-        for quantity in uphill_propagation.QUANTITIES
-        for d in uphill_propagation.CELLS
+        for quantity in mechanisms.QUANTITIES
+        for d in mechanisms.CELLS
         for value in (1.0, 2.0)
     ]
     same = {"pde": 1.0, "pde_theory": 1.0, "pde_effective": 1.0, "pde_error": 0.0}
@@ -115,8 +116,8 @@ def test_a_claim_is_as_good_as_its_worst_case():
     table = a_table()
     claims = uphill_propagation.judge({"comparison": table})
     assert {claim.verdict for claim in claims} == {Verdict.AGREE}
-    table.loc[table["quantity"] == uphill_propagation.WAVE, "verdict"] = str(Verdict.DISAGREE)
-    table.loc[table["quantity"] == uphill_propagation.FRONT, "automaton"] = 1.01
+    table.loc[table["quantity"] == mechanisms.WAVE, "verdict"] = str(Verdict.DISAGREE)
+    table.loc[table["quantity"] == mechanisms.FRONT, "automaton"] = 1.01
     verdicts = {
         claim.name: claim.verdict for claim in uphill_propagation.judge({"comparison": table})
     }

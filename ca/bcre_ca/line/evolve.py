@@ -48,6 +48,12 @@ def evolve(
         where the layers have outgrown dt by the end.
     ValueError
         for layers of unequal or wrong shape, empty or not finite.
+
+    >>> import numpy as np
+    >>> rule = Rule(v=0.1, D=0.1, gamma=0.01, Sc=0.5, d=1.0, dt=0.4)
+    >>> h, R = evolve(0.5 * np.arange(20.0)[::-1], np.eye(20)[3], rule, steps=10)
+    >>> float(round((h + R).sum() - 95, 12))
+    1.0
     """
     static, rolling = layers_of(h, R, rank=1)
     steps = whole(steps)

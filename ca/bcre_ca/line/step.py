@@ -48,6 +48,10 @@ def step(
     -------
     h, R: the new layers, shape (N,).
     outflow: what left through the foot, in units of R (times d: an area).
+
+    >>> rule = Rule(v=1.0, D=0.0, gamma=0.1, Sc=0.5, d=1.0, dt=0.5)
+    >>> step(np.array([3.0, 2.0, 1.5]), np.array([0.0, 1.0, 0.0]), rule)
+    (array([3. , 2. , 1.5]), array([0. , 0.5, 0.5]), 0.0)
     """
     if frozen is not None:
         rule.require_upwind("a frozen slope")

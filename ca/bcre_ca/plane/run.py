@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from typing import NamedTuple
 
 import numba
@@ -30,7 +31,7 @@ AT_ONCE = 200_000_000
 """Cell-steps between two looks at the keyboard: compiled code cannot be interrupted."""
 
 SHARED_FROM = 100_000
-"""Cells from which several threads pay."""
+"""Wet cells from which several threads pay."""
 
 _POOL = ThreadPoolExecutor(numba.get_num_threads())
 
@@ -124,8 +125,7 @@ class Run:
             self._poured += float(heights.sum(0, dtype=float) @ number)
 
     def largest_stable_step(self) -> float:
-        """Largest dt that is stable for the cells that the next block can read; NaN where they are
-        not finite."""
+        """Largest stable dt for all cells that the next block can read; NaN if not finite."""
         K = self.plane.coefficients(self._field.h.dtype)
         found = kernels.extremes(self._field, K, self._cells, BLOCK, self._work)
         return largest_step_of(self.plane, *found)
@@ -174,6 +174,13 @@ class Run:
         if self._threads == 1:
             self._call(WHOLE, 0, K, heights)
             return
+        for done in range(0, len(heights), BLOCK):
+            first, after = self._work.wet
+            is_shared = np.maximum(after - first, 0).sum() >= SHARED_FROM
+            advance = self._advance_in_threads if is_shared else partial(self._call, WHOLE, 0)
+            advance(K, heights[done : done + BLOCK])
+
+    def _advance_in_threads(self, K: Coefficients, heights: Array) -> None:
         for done in range(0, len(heights), self._work.together):
             some = heights[done : done + self._work.together]
             slabs = self._call(BEGIN, 0, K, some)

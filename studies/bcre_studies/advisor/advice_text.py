@@ -19,17 +19,21 @@ from bcre_studies.advisor.scene_text import scene_text
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.models.bcre import COARSEST
 from bcre_studies.models.registry import AUTOMATON, BCRE, CANDIDATES, SCHEMES
+from bcre_studies.running.place import Origin
 from bcre_studies.running.run import require_runnable
 from bcre_studies.system.files import replace_text, require_writable
 from bcre_studies.timing.costs import recorded
 
+FOR = "# advised for "
+"""So begins the line of an advised scene that names the scene which was asked about."""
 
-def answer(question: Question, scene: str, path: Path) -> str:
+
+def answer(question: Question, origin: Origin, path: Path) -> str:
     """Advise with pilots timed on this machine, write the advised scene, and report both.
 
     Parameters
     ----------
-    scene: what the scene is called; path: of the file that is written.
+    origin: where the scene came from; path: of the file that is written.
 
     Raises
     ------
@@ -37,7 +41,8 @@ def answer(question: Question, scene: str, path: Path) -> str:
         where the scene cannot be run; OSError where the file cannot be written.
     """
     require_writable("--out", path.parent, (path.name,))
-    require_runnable(with_model(question.scene, BCRE.name, COARSEST), BCRE.name, question.frames)
+    cells = max(question.scene.domain.cells, COARSEST)  # which hold the start
+    require_runnable(with_model(question.scene, BCRE.name, cells), BCRE.name, question.frames)
     console = Console(stderr=True)
     with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
         task = progress.add_task("pilots", total=None)
@@ -46,8 +51,8 @@ def answer(question: Question, scene: str, path: Path) -> str:
             progress.update(task, description=escape(f"pilot: {pilot}"), advance=1)
 
         advice = advise(question, Effort(recorded(), tell=tell))
-    write_advised(advice, path)
-    return text(advice, scene, path)
+    write_advised(advice, origin, path)
+    return text(advice, origin.name, path)
 
 
 def text(advice: Advice, scene: str, path: Path) -> str:
@@ -60,14 +65,23 @@ def text(advice: Advice, scene: str, path: Path) -> str:
     return "\n".join(_lines(advice, scene, path))
 
 
-def write_advised(advice: Advice, path: Path) -> None:
+def advised_of(path: Path) -> list[str]:
+    """The scene that a file was advised for; none where it says nothing."""
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, ValueError):
+        return []
+    return [line.removeprefix(FOR) for line in lines if line.startswith(FOR)]
+
+
+def write_advised(advice: Advice, origin: Origin, path: Path) -> None:
     """Write the scene on the advised model and cells, where there is one."""
     if not advice.options:
         return
     best, question = advice.options[0], advice.question
     advised = with_model(question.scene, best.model, best.cells)
-    comment = f"Advised for {question.observable}: {_option(best)}."
-    replace_text(path, scene_text(advised, path.parent, comment))
+    comments = f"# {_option(best)}, for {question.observable}", FOR + origin.seen_from(path.parent)
+    replace_text(path, scene_text(advised, path.parent, *comments))
 
 
 def _lines(advice: Advice, scene: str, path: Path) -> Iterator[str]:

@@ -27,7 +27,6 @@ from bcre_studies.advisor.pilot import (
     Reference,
     candidate,
     reference,
-    sees_start,
     warm_up,
 )
 from bcre_studies.advisor.question import Question
@@ -182,8 +181,6 @@ def _unresolved(question: Question, against: Reference) -> str:
     """Why the error of the reference is not small."""
     cells = against.run.x.size
     found = f"{question.observable} of BCRE is known to {against.error:.2g} only, on {cells} cells"
-    if not sees_start(question.scene, cells):
-        return f"{cells} cells, the finest pilots, are wider than parts of the start"
     left = float(against.run.R[-1].mean() / (against.run.R[0].mean() or 1.0))
     if question.observable == "R" and left < GONE:
         return f"{found}: {left:.1g} of the layer is left in the domain, which is what R is then"

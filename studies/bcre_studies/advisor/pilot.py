@@ -1,6 +1,7 @@
 r"""Short runs on coarse grids: a reference with its own error, and every model against it.
 
-All models are run on 25, 50, 100, ... cells. The reference is the finest pilot of BCRE on py-pde,
+All models are run on 25, 50, 100, ... cells, from the first that hold the start
+(:mod:`bcre_studies.scenes.held`). The reference is the finest pilot of BCRE on py-pde,
 refined until its grid convergence index (:mod:`bcre_pde.refine`) is small against the tolerance,
 or until its part of the allowance is spent. A model is piloted until it is known well enough.
 """
@@ -22,9 +23,7 @@ from bcre_studies.models.automaton import rule_of
 from bcre_studies.models.bcre import problem_of
 from bcre_studies.models.registry import BCRE, CANDIDATES, SCHEMES
 from bcre_studies.models.run import Run
-from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene
-from bcre_studies.scenes.terms import Gaussian
 from bcre_studies.timing.costs import Costs, closures_of
 
 COARSEST = 25
@@ -37,9 +36,6 @@ REFERENCE_SHARE = 0.5
 
 SHORT_S = 0.02
 """Shorter pilots are run three times, for their time; the median counts."""
-
-SEEN = 0.8
-"""A grid sees the start if it sees this part of the ups and downs of both layers."""
 
 SHARP = 0.75
 """A scarp: the largest fall of u from cell to cell stays by this part as the cells are halved."""
@@ -126,26 +122,24 @@ def run_model(
 
 def warm_up(scene: Scene, model: str) -> None:
     """Compile what a model needs, so that no pilot is timed with it."""
-    run_model(scene, model, [0.0, 1e-9 * scene.time.until], COARSEST)
+    run_model(scene, model, [0.0, 1e-9 * scene.time.until], coarsest(scene))
 
 
-def sees_start(scene: Scene, cells: int) -> bool:
-    """Whether the centres of so many cells see what stands at the start.
+def coarsest(scene: Scene, finest: int = FINEST) -> int:
+    """Cells of the coarsest pilot: grids that all miss a narrow pulse would agree, on nothing.
 
-    Grids that all miss a narrow pulse would agree with each other and all be wrong. The total
-    variations of R and u are compared with those on cells sixteen times finer than any pilot's.
+    Raises
+    ------
+    PilotError
+        where so few grids up to ``finest`` cells hold the start that no error could be known.
     """
-    pulses = [term.centre for term in scene.rolling if isinstance(term, Gaussian)]
-    every = np.sort(np.concatenate([scene.centres(16 * FINEST), pulses]))
-    inside = every[(every >= 0) & (every <= scene.domain.length)]
-    coarse, fine = (_variations(scene, x) for x in (scene.centres(cells), inside))
-    return bool((coarse >= SEEN * fine - 1e-12).all())
-
-
-def _variations(scene: Scene, x: Array) -> Array:
-    h, R = scene.initial(x)
-    u = h + scene.material.Sc * x
-    return np.array([np.abs(np.diff(layer)).sum() for layer in (u, R)])
+    cells = COARSEST
+    most = finest >> (LEAST_PILOTS - 1)
+    while not scene.holds(cells):
+        cells *= 2
+        if cells > most:
+            raise PilotError(f"{most} cells are wider than parts of the start")
+    return cells
 
 
 @dataclass(frozen=True)
@@ -183,7 +177,7 @@ def reference(
         where not even the coarsest grids can be solved in time.
     """
     runs: list[Run] = []
-    cells, error = COARSEST, math.inf
+    cells, error = coarsest(scene), math.inf
     while cells <= FINEST and error > wanted:
         steps = _next_steps(scene, BCRE.name, runs, cells)
         expected = allowance.expected(scene, BCRE.name, cells, steps, len(times))
@@ -197,8 +191,7 @@ def reference(
                 raise
             break
         if len(runs) >= LEAST_PILOTS:
-            seen = sees_start(scene, cells)
-            error = uncertainty(runs[-1], runs[-2], runs[-3], observable) if seen else math.inf
+            error = uncertainty(runs[-1], runs[-2], runs[-3], observable)
         cells *= 2
     if len(runs) < LEAST_PILOTS:
         raise PilotError(f"{cells} cells of BCRE would take about {expected:.2g} s")
@@ -224,7 +217,7 @@ def candidate(
     """
     runs: list[Run] = []
     errors: list[float] = []
-    cells = COARSEST
+    cells = coarsest(scene, allowance.finest)
     while cells <= allowance.finest:
         steps = _next_steps(scene, model, runs, cells)
         expected = allowance.expected(scene, model, cells, steps, len(times))

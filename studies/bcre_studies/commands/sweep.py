@@ -6,16 +6,18 @@ from pathlib import Path
 
 import click
 
+from bcre_studies.commands import options
 
-@click.command()
+
+@click.command(
+    epilog=options.examples("bcre sweep my_sweep.toml --dry-run", "bcre sweep my_sweep.toml")
+)
 @click.argument("spec", type=click.Path(dir_okay=False, path_type=Path), metavar="SPEC.toml")
 @click.option(
     "--out", type=click.Path(file_okay=False, path_type=Path), help="Folder  [default: out/SPEC]"
 )
 @click.option("--dry-run", is_flag=True, help="Say what it would take; write nothing.")
-@click.option(
-    "--scheduler", metavar="ADDRESS", help="Dask scheduler, tcp://host:port  [default: all cores]"
-)
+@options.scheduler
 def sweep(spec: Path, out: Path | None, dry_run: bool, scheduler: str | None) -> None:
     """Measure every point of SPEC.toml; write points.parquet. Run again, a stopped one goes on."""
     from bcre_studies.sweeps import sweep as engine

@@ -114,7 +114,7 @@ def _with_error(name: str, pde: Measured, finest: float) -> dict[str, float]:
 
 
 def compare(
-    scene: Scene, times: Sequence[float], measure: Measure, tolerance: float, **refinement: Any
+    scene: Scene, times: Sequence[float], measure: Measure, tolerance: float, /, **refinement: Any
 ) -> Comparison:
     """Measure the same thing on the automaton's run and on refined solutions of BCRE.
 
@@ -124,7 +124,7 @@ def compare(
     times: when they are recorded; ``measure`` sees all of them.
     measure: a number, or a profile at positions that do not depend on the run's grid.
     tolerance: largest relative difference that counts as agreement.
-    refinement: options of :func:`bcre_pde.solve_refined`.
+    refinement: options of :func:`bcre_pde.solve_refined`, among them the solver's ``tolerance``.
     """
     (comparison,) = compare_each(
         scene, times, lambda run: [measure(run)], [None], tolerance, **refinement
@@ -138,6 +138,7 @@ def compare_each(
     measure: MeasureEach,
     scales: Scales,
     tolerance: float,
+    /,
     **refinement: Any,
 ) -> list[Comparison]:
     """Compare several numbers or profiles, measured on the same runs, each by itself.
@@ -166,6 +167,7 @@ def refine_each(
     automaton: Sequence[Any],
     scales: Scales,
     tolerance: float,
+    /,
     **refinement: Any,
 ) -> list[Measured]:
     """Solve until each error is :data:`SHARE` of the difference from the automaton's value."""
@@ -191,6 +193,7 @@ def refine(
     measure: Measure,
     automaton: ArrayLike,
     tolerance: float,
+    /,
     **refinement: Any,
 ) -> Measured:
     """:func:`refine_each` of a single quantity, compared by its own size."""

@@ -45,6 +45,9 @@ def verdict_of(
         with the automaton's D_eff and kappa_eff.
     resolved, resolved_effective: whether the PDE's own error is small against that difference.
     tolerance: largest relative difference that counts as agreement.
+
+    >>> print(verdict_of(0.53, True, 0.007, True, tolerance=0.05))
+    explained by cell size
     """
     if resolved and difference <= tolerance:
         return Verdict.AGREE

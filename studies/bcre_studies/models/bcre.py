@@ -63,7 +63,11 @@ class Bcre(Adapter):
         ------
         bcre_pde.SolveError
             where the solver gives up.
+        SceneError
+            where the grid cannot hold the start.
         """
+        if cells is not None:
+            scene.require_held(cells, "solver.cells")
         problem = problem_of(self._of(scene))
         options = solver_options(scene, stop)
         return run_of(scene, bcre_pde.solve(problem, times, cells or finest(scene), **options))
@@ -121,7 +125,7 @@ class Bcre(Adapter):
             return solution, on_solution(solution)
 
         if scene.solver.cells is not None:
-            return bcre_pde.measure_refined(on_cells, _given_grids(scene.solver.cells))
+            return bcre_pde.measure_refined(on_cells, _given_grids(scene))
         grids = {"coarsest": _coarsest(scene), "finest": finest(scene)}
         return bcre_pde.solve_refined_each(problem, times, on_solution, allowed, **grids, **options)
 
@@ -187,9 +191,14 @@ def run_of(scene: Scene, solution: bcre_pde.Solution, error: float | None = None
     )
 
 
-def _given_grids(cells: int) -> list[int]:
-    """The scene's own PDE grid, and for its error two that are two and four times coarser."""
-    return [grid for grid in (cells // 4, cells // 2, cells) if grid >= bcre_pde.SMALLEST_GRID]
+def _given_grids(scene: Scene) -> list[int]:
+    """The scene's own PDE grid, and for its error two that are two and four times coarser.
+
+    Those that cannot hold the start tell nothing of the error and are left out.
+    """
+    cells = scene.solver.cells or 0
+    grids = (cells // 4, cells // 2, cells)
+    return [grid for grid in grids if grid >= bcre_pde.SMALLEST_GRID and scene.holds(grid)]
 
 
 def _coarsest(scene: Scene) -> int:

@@ -27,6 +27,8 @@ class HeightOnly(Adapter):
         cells: int | None = None,
         stop: Stop | None = None,
     ) -> Run:
+        if cells is not None:
+            scene.require_held(cells)
         x = scene.centres(cells)
         d = scene.domain.length / x.size
         start = np.sum(scene.initial(x), axis=0)

@@ -13,6 +13,18 @@ from bcre_studies.scenes.scene import Scene
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray as xr
+
+UNITS = {"t": "time", "x": "length", "h": "length", "R": "length", "outflow": "length^2"}
+"""A scene has one consistent unit of length and one of time, which it does not name."""
+
+LONG_NAMES = {
+    "t": "time",
+    "x": "distance downhill, at cell centres",
+    "h": "static layer",
+    "R": "rolling layer",
+    "outflow": "area that has left through the foot",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,21 +91,63 @@ class Run:
             values = np.concatenate([values[-wrap:], values, values[:wrap]])
         return np.asarray(make_interp_spline(positions, values, k=5)(x))
 
+    def to_dataframe(self, **labels: str) -> pd.DataFrame:
+        """One row for each time and place, with the columns model, t, x, h and R.
+
+        ``attrs["units"]`` holds the unit of each.
+
+        Parameters
+        ----------
+        labels: columns of one value each, put before the others.
+
+        >>> from bcre_studies.models.registry import AUTOMATON
+        >>> from bcre_studies.scenes.scene import load
+        >>> table = AUTOMATON.run(load("figure3"), times=[0, 10]).to_dataframe()
+        >>> table.columns.tolist(), len(table), table.attrs["units"]["R"]
+        (['model', 't', 'x', 'h', 'R'], 200, 'length')
+        """
+        import pandas as pd
+
+        frames, cells = self.h.shape
+        columns = {
+            "t": np.repeat(self.t, cells),
+            "x": np.tile(self.x, frames),
+            "h": self.h.ravel(),
+            "R": self.R.ravel(),
+        }
+        table = pd.DataFrame({**labels, "model": self.model, **columns})
+        table.attrs["units"] = {name: UNITS[name] for name in columns}
+        return table
+
+    def to_xarray(self) -> xr.Dataset:
+        """h and R over t and x, and the outflow over t, each with a long name and a unit.
+
+        The attributes hold the scene's title and coefficients, and what the run took. Everything
+        in it can be written with ``to_netcdf(path, engine="scipy")``.
+
+        >>> from bcre_studies.models.registry import AUTOMATON
+        >>> from bcre_studies.scenes.scene import load
+        >>> data = AUTOMATON.run(load("figure3"), times=[0, 10]).to_xarray()
+        >>> dict(data.sizes), data.R.attrs["units"], data.attrs["v"]
+        ({'t': 2, 'x': 100}, 'length', 2.5)
+        """
+        import xarray as xr
+
+        layers = {"h": (("t", "x"), self.h), "R": (("t", "x"), self.R)}
+        known = self.scene.material.model_dump() | {"d": self.d} | self.facts
+        took = {"steps": self.steps, "evaluations": self.evaluations, "wall_s": self.wall_s}
+        data = xr.Dataset(
+            layers | {"outflow": ("t", self.outflow)},
+            coords={"t": self.t, "x": self.x},
+            attrs={"title": self.scene.title, "model": self.model}
+            | {name: value for name, value in known.items() if value is not None}
+            | took,
+        )
+        for name, unit in UNITS.items():
+            data[name].attrs = {"long_name": LONG_NAMES[name], "units": unit}
+        return data
+
 
 def frame_times(scene: Scene, frames: int) -> list[float]:
     """``frames`` equally spaced times from 0 to the end of the scene."""
     return [float(t) for t in np.linspace(0.0, scene.time.until, frames)]
-
-
-def profiles(run: Run, **labels: str) -> pd.DataFrame:
-    """The layers as rows of x, h and R at every time, with constant label columns before them."""
-    import pandas as pd
-
-    frames, cells = run.h.shape
-    columns = {
-        "t": np.repeat(run.t, cells),
-        "x": np.tile(run.x, frames),
-        "h": run.h.ravel(),
-        "R": run.R.ravel(),
-    }
-    return pd.DataFrame({**labels, **columns})

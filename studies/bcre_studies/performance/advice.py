@@ -36,7 +36,7 @@ from bcre_studies.performance.random_scenes import kind_of, random_scene
 from bcre_studies.performance.record.record import read
 from bcre_studies.reporting import style
 from bcre_studies.scenes.listing import built_in_names
-from bcre_studies.scenes.scene import Scene, load
+from bcre_studies.scenes.scene import Scene, SceneError, load
 from bcre_studies.sweeps.parallel import each
 from bcre_studies.timing.costs import closures_of, recorded
 
@@ -246,7 +246,10 @@ def _least(scene: Scene, model: str, true: Truth) -> tuple[int, int] | None:
     """Fewest cells of :data:`LADDER` from which on the model meets the tolerance, and its steps."""
     found = None
     for cells in reversed(LADDER[model]):
-        run = run_model(scene, model, frame_times(scene, FRAMES), cells)
+        try:
+            run = run_model(scene, model, frame_times(scene, FRAMES), cells)
+        except SceneError:  # cells that cannot hold the start
+            break
         if deviation(run, true.run) > TOLERANCE:
             break
         found = cells, run.steps

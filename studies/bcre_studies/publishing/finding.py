@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import inspect
 from dataclasses import dataclass
+from functools import cached_property
 
 from bcre_studies.catalog import STUDIES, study
 from bcre_studies.comparison.claim import Claim
 from bcre_studies.publishing.store import Tables, tables_of
-from bcre_studies.reporting.pages import markdown, readable
+from bcre_studies.reporting.page.picture import Picture
+from bcre_studies.reporting.pages import markdown
 
 
 @dataclass(frozen=True)
@@ -26,10 +28,10 @@ class Finding:
         """The comparison as a Markdown table."""
         return markdown(self.tables["comparison"])
 
-    @property
-    def comparison_html(self) -> str:
-        """The comparison as an HTML table, its texts escaped."""
-        return str(readable(self.tables["comparison"]).to_html(index=False, border=0))
+    @cached_property
+    def picture(self) -> Picture:
+        """Its figure, drawn once."""
+        return Picture(study(self.name).draw(self.tables), self.name)
 
 
 def find(name: str) -> Finding:

@@ -9,14 +9,13 @@ from pathlib import Path
 
 import pandas as pd
 
-from bcre_studies.catalog import STUDIES, study
+from bcre_studies.catalog import STUDIES
 from bcre_studies.comparison.claim import Claim
-from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.paper_claims import PAPER_CLAIMS, PaperClaim
 from bcre_studies.publishing.finding import Finding, find
-from bcre_studies.reporting import style
+from bcre_studies.publishing.page import write_pages
 from bcre_studies.reporting.pages import render
-from bcre_studies.system.files import REPORTS, replace_file, replace_text, require_writable
+from bcre_studies.system.files import REPORTS, replace_text, require_writable
 
 VERDICTS = REPORTS / "verdicts.csv"
 COLUMNS = ["study", "claim", "verdict"]
@@ -31,8 +30,7 @@ def write_study(finding: Finding) -> None:
     folder = REPORTS / finding.name
     for key, table in finding.tables.items():
         replace_text(folder / f"{key}.csv", table.to_csv(index=False, lineterminator="\n"))
-    figure = study(finding.name).draw(finding.tables)
-    replace_file(folder / "figure.svg", lambda path: style.save(figure, path))
+    replace_text(folder / "figure.svg", finding.picture.text)
     replace_text(folder / "README.md", render("study.md.j2", finding=finding))
 
 
@@ -43,6 +41,11 @@ class DecidedClaim:
     claim: PaperClaim
     verdict: str
     evidence: list[tuple[str, Claim]]
+
+    @property
+    def remark(self) -> str:
+        """What is to be said where that is the verdict."""
+        return self.claim.remark(self.verdict)
 
 
 def decide(findings: Sequence[Finding]) -> list[DecidedClaim]:
@@ -55,13 +58,13 @@ def decide(findings: Sequence[Finding]) -> list[DecidedClaim]:
 
 
 def write_index(findings: Sequence[Finding]) -> None:
-    """Write the index as Markdown and as a page, the paper's claims, and record the verdicts."""
+    """Record the verdicts, write the paper's claims with their evidence, and the pages."""
     for path, quality in zip(_verdict_files(), (False, True), strict=True):
         table = verdict_table(findings, quality)
         replace_text(path, table.to_csv(index=False, lineterminator="\n"))
-    content = {"findings": findings, "verdicts": list(Verdict), "paper_claims": decide(findings)}
-    for name in ("README.md", "index.html", "claims.md"):
-        replace_text(REPORTS / name, render(f"{name}.j2", **content))
+    decided = decide(findings)
+    replace_text(REPORTS / "claims.md", render("claims.md.j2", paper_claims=decided))
+    write_pages(findings, decided, REPORTS)
 
 
 def write_all() -> list[Finding]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -25,6 +26,7 @@ RC: Any = {
     "legend.frameon": False,
     "lines.linewidth": 1.4,
     "lines.markersize": 4.5,
+    "svg.fonttype": "none",
     "svg.hashsalt": "bcre",
 }
 
@@ -52,7 +54,14 @@ def legend(
     figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), handlelength=3.4)
 
 
+def svg_of(figure: Figure) -> str:
+    """The figure as SVG that depends on the figure alone; its texts are texts."""
+    content = io.StringIO()
+    with mpl.rc_context(RC):
+        figure.savefig(content, format="svg", metadata={"Date": None})
+    return content.getvalue()
+
+
 def save(figure: Figure, path: Path) -> None:
     """Write an SVG whose bytes depend on the figure alone."""
-    with mpl.rc_context(RC):
-        figure.savefig(path, format="svg", metadata={"Date": None})
+    path.write_text(svg_of(figure), encoding="utf-8")

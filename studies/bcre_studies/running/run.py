@@ -17,6 +17,7 @@ import numpy as np
 
 from bcre_studies.models.registry import Model, chosen
 from bcre_studies.models.run import Run, frame_times
+from bcre_studies.running.place import PROFILES, SUMMARY, Origin
 from bcre_studies.scenes.scene import Scene, SceneError
 from bcre_studies.system import memory
 from bcre_studies.system.files import replace_file, replace_text
@@ -131,9 +132,9 @@ def _most_extreme(scene: Scene) -> str:
     return f"{key} = {numbers[key]!r}"
 
 
-def write_run(runs: Sequence[Run], folder: Path) -> dict[str, Any]:
+def write_run(runs: Sequence[Run], folder: Path, origin: Origin) -> dict[str, Any]:
     """Write ``profiles.csv`` and ``summary.json``; return the summary."""
-    summary = {run.model: summarise(run) for run in runs}
+    summary = {run.model: summarise(run) | origin.record(run.scene, folder) for run in runs}
 
     def write(path: Path) -> None:
         with path.open("w", encoding="utf-8", newline="") as file:
@@ -145,8 +146,8 @@ def write_run(runs: Sequence[Run], folder: Path) -> dict[str, Any]:
                     columns = x, h.tolist(), R.tolist()
                     table.writerows(zip(repeat(run.model), repeat(t), *columns, strict=False))
 
-    replace_file(folder / "profiles.csv", write)
-    replace_text(folder / "summary.json", json.dumps(summary, indent=2) + "\n")
+    replace_file(folder / PROFILES, write)
+    replace_text(folder / SUMMARY, json.dumps(summary, indent=2) + "\n")
     return summary
 
 

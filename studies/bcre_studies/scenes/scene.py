@@ -17,6 +17,8 @@ from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
 from bcre_studies.scenes.domain import Array, Domain, NonNegative, Positive, StrictTable
 from bcre_studies.scenes.listing import BUILT_IN, built_in_names
+from bcre_studies.scenes.refusal import SceneError as SceneError
+from bcre_studies.scenes.refusal import first_of, refuse_long_integers
 from bcre_studies.scenes.tables import ProfileError
 from bcre_studies.scenes.terms import (
     RollingTerm,
@@ -26,20 +28,12 @@ from bcre_studies.scenes.terms import (
     TableSurface,
 )
 from bcre_studies.system.memory import NotEnoughMemoryError
-from bcre_studies.system.one_line import one_line
 
 LONGEST = 100_000
 """Bytes of a scene file; it is a page of text, long profiles belong into tables."""
 
 WIDEST = 1_000
 """Characters of one of its lines; keys of very many parts would take hours to be read."""
-
-
-class SceneError(ValueError):
-    """A scene that cannot be run; its text is one line naming key, value and what is allowed."""
-
-    def __init__(self, message: str) -> None:
-        super().__init__(one_line(message))
 
 
 class SceneMaterial(StrictTable):
@@ -137,6 +131,24 @@ class Scene(StrictTable):
         """Cell centres of the automaton, or of another grid on the same domain."""
         return self.domain.centres(cells)
 
+    def require_held(self, cells: int, key: str = "domain.cells") -> None:
+        """Refuse a grid that cannot hold the initial profile; see :mod:`bcre_studies.scenes.held`.
+
+        Raises
+        ------
+        SceneError
+            naming the term, and ``key`` as what asks for so many cells.
+        """
+        for layer, terms in (("surface", self.surface), ("rolling", self.rolling)):
+            for index, term in enumerate(terms):
+                if why := term.beyond(self.domain, cells):
+                    raise SceneError(f"{layer}.{index}.{why} ({key} = {cells})")
+
+    def holds(self, cells: int) -> bool:
+        """Whether so many cells can hold the initial profile."""
+        parts = (*self.surface, *self.rolling)
+        return not any(term.beyond(self.domain, cells) for term in parts)
+
     def initial(self, x: Array) -> tuple[Array, Array]:
         """h and R at positions x at t = 0, the same functions for every grid and model."""
         h, R = np.zeros_like(x), np.zeros_like(x)
@@ -145,6 +157,11 @@ class Scene(StrictTable):
         for rolling in self.rolling:
             R += rolling.layer(x, self.domain)
         return h, R
+
+    def tables(self) -> list[Path]:
+        """The CSV files that its profiles come from."""
+        terms = (*self.surface, *self.rolling)
+        return [self._folder / term.file for term in terms if term.kind == "table"]
 
     def with_changes(self, **changes: Any) -> Scene:
         """A copy with values replaced: ``with_changes(v=0.2, **{"rolling.0.width": 1.0})``."""
@@ -158,6 +175,13 @@ def load(source: str | Path, overrides: Sequence[str] = ()) -> Scene:
     ------
     SceneError
         where the scene is not to be found or not allowed.
+
+    >>> scene = load("figure2", overrides=["D=0.2"])
+    >>> scene.material.v, scene.material.D, scene.d
+    (2.5, 0.2, 1.0)
+    >>> load("figure2", overrides=["D=-1"])
+    Traceback (most recent call last):
+    bcre_studies.scenes.scene.SceneError: material.D = -1: must be greater than or equal to 0
     """
     path = Path(source)
     if str(source) in built_in_names():
@@ -249,15 +273,18 @@ def _read(path: Path) -> str:
 
 
 def _validated(data: dict[str, Any], folder: Path) -> Scene:
-    _refuse_long_integers(data)
+    refuse_long_integers(data)
     try:
         scene = Scene.model_validate(data)
     except ValidationError as failure:
-        raise SceneError(_first_of(failure)) from None
+        raise SceneError(first_of(failure)) from None
     scene._folder = folder
     try:
         with np.errstate(over="raise", divide="raise", invalid="raise"):
             _load_tables(scene)
+            scene.require_held(scene.domain.cells)
+            if scene.solver.cells is not None:
+                scene.require_held(scene.solver.cells, "solver.cells")
     except (ProfileError, NotEnoughMemoryError) as failure:
         raise SceneError(str(failure)) from None
     except FloatingPointError as failure:
@@ -275,55 +302,3 @@ def _load_tables(scene: Scene) -> None:
     for index, rolling in enumerate(scene.rolling):
         if isinstance(rolling, TableRolling):
             rolling.load(f"rolling.{index}", scene._folder, scene.domain)
-
-
-def _refuse_long_integers(data: dict[str, Any]) -> None:
-    """Integers are of 64 bits in TOML; longer ones cannot even be shown."""
-    todo: list[tuple[str, Any]] = [("", data)]
-    while todo:
-        key, value = todo.pop()
-        if isinstance(value, dict):
-            todo += [(f"{key}.{name}", part) for name, part in value.items()]
-        elif isinstance(value, list):
-            todo += [(f"{key}.{index}", part) for index, part in enumerate(value)]
-        elif isinstance(value, int) and value.bit_length() > 63:
-            raise SceneError(
-                f"{key[1:]} = an integer of {value.bit_length()} bits: must be one of at most 63"
-            )
-
-
-def _first_of(failure: ValidationError) -> str:
-    errors = failure.errors()
-    # Of a choice (a number or "auto") every alternative reports; the first one speaks for all.
-    error = errors[0]
-    message = " ".join(error["msg"].removeprefix("Value error, ").split())
-    if error["type"] == "value_error":
-        return message
-    variants = {"incline", "sine", "noise", "table", "gaussian", "uniform"}
-    key = ".".join(str(part) for part in error["loc"] if part not in variants)
-    if error["loc"][-1:] == ("constrained-float",) or "literal" in str(error["loc"][-1]):
-        key = ".".join(str(part) for part in error["loc"][:-1])
-        message += " (or be 'auto')" if key.endswith("step") else ""
-    if error["type"] == "missing":
-        return f"{key}: missing; this key is required"
-    if error["type"].startswith("union_tag"):
-        kind = error["input"].get("kind") if isinstance(error["input"], dict) else error["input"]
-        surfaces = key.startswith("surface")
-        expected = (
-            "'incline', 'sine', 'noise', 'table'" if surfaces else "'gaussian', 'uniform', 'table'"
-        )
-        return f"{key}.kind = {_short(kind)}: must be one of {expected}"
-    if error["type"] == "extra_forbidden":
-        return f"{key} = {_short(error['input'])}: no such key is allowed here"
-    if error["type"] == "tuple_type":
-        return f"{key} = {_short(error['input'])}: must be a list of tables, [[{key}]]"
-    allowed = message.replace("Input should be", "must be")
-    return f"{key} = {_short(error['input'])}: {allowed}"
-
-
-def _short(value: object) -> str:
-    try:
-        text = repr(value)
-    except (RecursionError, ValueError):
-        return f"({type(value).__name__} too long or too deep to be shown)"
-    return text if len(text) <= 80 else f"{text[:77]}..."

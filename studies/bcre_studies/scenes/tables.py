@@ -1,4 +1,4 @@
-"""Profiles from CSV files: read strictly, then splined."""
+"""Profiles from CSV files: read strictly, then made a function of position."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bcre_studies.scenes.domain import Array, Domain
+from bcre_studies.scenes.interpolant import through, through_period
 from bcre_studies.system.memory import require
 
 if TYPE_CHECKING:
-    from scipy.interpolate import CubicSpline
+    from scipy.interpolate import PPoly
 
 LARGEST = 1e100
 """Heights and layers beyond this leave no room to compute with them."""
@@ -80,23 +81,21 @@ def _rows(path: Path, refuse: Callable[[str], ProfileError]) -> tuple[list[str],
     return head, lines[1:]
 
 
-def spline(what: str, x: Array, values: Array, domain: Domain) -> CubicSpline:
-    """Cubic spline through the table, closed over the period where ends are periodic."""
-    from scipy.interpolate import CubicSpline  # a third of a second that most scenes do not need
-
-    if domain.ends == "open":
-        return CubicSpline(x, values)
+def profile(what: str, x: Array, values: Array, domain: Domain) -> PPoly:
+    """The function through the table, closed over the period where ends are periodic."""
     length = domain.length
+    if domain.ends == "open":
+        return through(x, values, (0.0, length))
     inside = x < x[0] + length * (1 - 1e-9)
-    around = np.append(x[inside], x[0] + length)
-    closed = np.append(values[inside], values[0])
-    steepest = float(np.max(np.abs(np.diff(values[inside]) / np.diff(x[inside]))))
-    across = float(abs(closed[-1] - closed[-2]) / (around[-1] - around[-2]))
+    places, closing = x[inside], values[inside]
+    steepest = float(np.max(np.abs(np.diff(closing) / np.diff(places))))
+    last_gap = places[0] + length - places[-1]
+    across = float(abs(closing[0] - closing[-1]) / last_gap)
     repeated = values[~inside][0] - values[0] if (~inside).any() else 0.0
     rounding = 1e-9 * float(np.max(np.abs(values)))
-    if abs(repeated) > rounding or across > JUMP * steepest + rounding / (around[-1] - around[-2]):
+    if abs(repeated) > rounding or across > JUMP * steepest + rounding / last_gap:
         raise ProfileError(
             f"{what} goes from {values[0]:.6g} at x = {x[0]:.6g} to {values[-1]:.6g} at "
             f"x = {x[-1]:.6g}; with periodic ends it must close over domain.length = {length:.6g}"
         )
-    return CubicSpline(around, closed, bc_type="periodic", extrapolate="periodic")
+    return through_period(places, closing, length)

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import joblib
+from rich.console import Console
 from rich.markup import escape
 from rich.progress import track
 
@@ -89,7 +90,8 @@ def each(function: Callable[[Case], Result], cases: Iterable[Case], label: str) 
     )
     measured = joblib.Parallel(n_jobs=-1, return_as="generator_unordered")(tasks)
     with closing(measured):
-        shown = track(measured, escape(f"{label:24}"), total=len(todo), completed=found)
+        what, console = escape(f"{label:24}"), Console(stderr=True)
+        shown = track(measured, what, total=len(todo), completed=found, console=console)
         for i, result in shown:
             results[i] = result
             place = places[i]

@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -20,6 +19,7 @@ from bcre_studies.sweeps.table import FAILURE, POINT, VERSION, Results
 from bcre_studies.sweeps.workers import Workers, workers_of
 from bcre_studies.system import sources
 from bcre_studies.system.files import alone
+from bcre_studies.system.release import release
 
 PILOT = 8
 """Points measured to estimate the cost of all."""
@@ -130,11 +130,7 @@ def estimate(sweep: Sweep, scheduler: str | None) -> str:
 
 def version_of(module: str) -> str:
     """The release, and a digest of the sources that the module's results depend on."""
-    try:
-        release = version("bcre-validation")
-    except PackageNotFoundError:
-        release = "source"
-    return f"{release}+{sources.digest(module)[:16]}"
+    return f"{release()}+{sources.digest(module)[:16]}"
 
 
 @dataclass

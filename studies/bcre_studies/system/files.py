@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import errno
 import glob
 import os
 import secrets
+import shutil
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from filelock import FileLock, Timeout
@@ -21,38 +23,77 @@ REPORTS = ROOT / "reports"
 CACHE = ROOT / ".cache"
 
 
+LOCKLESS = {errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOLCK, errno.EINVAL}
+"""What a file system without locks answers when it is asked for one."""
+
+
 def replace_file(path: Path, write: Callable[[Path], None]) -> None:
     """Let ``write`` fill a temporary file beside ``path``, then move it there in one step.
 
     The content is on the disk before it bears its name, so that a power cut leaves the old file or
-    the new one. What a killed writer left of the same file is removed.
+    the new one. What a killed writer left of the same file is removed. A link is written through. A
+    file that is there keeps its permissions, a new one has those of the umask.
 
     Raises
     ------
     OSError
         naming the file and the reason where it cannot be written; what was there stays.
     """
-    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        sweep(path.parent, glob.escape(path.name))
-        with FileLock(temporary, mode=0o644):  # creates it; held for as long as its writer lives
+        target = path.resolve()
+        target.parent.mkdir(parents=True, exist_ok=True)
+        sweep(target.parent, glob.escape(target.name))
+        temporary = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
+        with locked(temporary):  # creates it; held for as long as its writer lives
             try:
                 write(temporary)
                 with temporary.open("rb+") as file:
                     os.fsync(file.fileno())
-                temporary.replace(path)
+                if target.exists():
+                    shutil.copymode(target, temporary)
+                temporary.replace(target)
             finally:
                 temporary.unlink(missing_ok=True)
-    except OSError as error:
-        raise OSError(f"{path}: cannot be written: {error.strerror or error}") from error
+    except (OSError, RuntimeError) as error:  # the latter for links that go round in a circle
+        reason = getattr(error, "strerror", None) or error
+        raise OSError(f"{path}: cannot be written: {reason}") from error
 
 
 def sweep(folder: Path, pattern: str) -> None:
-    """Remove temporary files, of names like ``pattern``, whose writers are dead."""
+    """Remove temporary files, of names like ``pattern``, whose writers are dead.
+
+    Where the file system has no locks nobody knows who is dead, so that they stay.
+    """
     for leftover in folder.glob(f".{pattern}.*.part"):
-        with suppress(OSError), FileLock(leftover, blocking=False):  # a living writer has it locked
-            leftover.unlink()
+        # A living writer has it locked.
+        with suppress(OSError), locked(leftover, blocking=False) as held:
+            if held:
+                leftover.unlink()
+
+
+@contextmanager
+def locked(path: Path, blocking: bool = True) -> Iterator[bool]:
+    """Hold the file ``path``, which is made if need be; do without where no file can be locked.
+
+    Yields whether it is held.
+
+    Raises
+    ------
+    filelock.Timeout
+        where another holds it and ``blocking`` is false.
+    """
+    lock = FileLock(path, fallback_to_soft=False)
+    try:
+        lock.acquire(blocking=blocking)
+    except OSError as error:
+        if error.errno not in LOCKLESS:
+            raise
+        yield False
+        return
+    try:
+        yield True
+    finally:
+        lock.release()
 
 
 @contextmanager
@@ -62,16 +103,13 @@ def alone(lock: Path, waiting: str) -> Iterator[None]:
     A second run waits, after saying ``waiting``, until the first has ended, however it ends.
     """
     lock.parent.mkdir(parents=True, exist_ok=True)
-    held = FileLock(lock)
-    try:
-        held.acquire(blocking=False)
-    except Timeout:
-        print(waiting, file=sys.stderr, flush=True)
-        held.acquire()
-    try:
+    with ExitStack() as held:
+        try:
+            held.enter_context(locked(lock, blocking=False))
+        except Timeout:
+            print(waiting, file=sys.stderr, flush=True)
+            held.enter_context(locked(lock))
         yield
-    finally:
-        held.release()
 
 
 def require_writable(key: str, folder: Path, names: Sequence[str] = ()) -> None:

@@ -21,6 +21,7 @@ import pandas as pd
 from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.comparison.wording import sentences, when
 from bcre_studies.models.registry import AUTOMATON, BCRE, HEIGHT_ONLY, Look
 from bcre_studies.models.run import Run
 from bcre_studies.observables.outcome import slope
@@ -132,44 +133,47 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
         for model in (AUTOMATON, BCRE)
     )
     tolerance = f"{TOLERANCE:.0%} {WHY}"
+    still = slopes[EXCESSES[-1], 0.0]
+
+    def claim(name: str, statement: str, good: bool, evidence: str) -> Claim:
+        verdict = Verdict.AGREE if good else Verdict.DISAGREE
+        return Claim(name, statement, verdict, evidence, tolerance)
+
     return [
-        Claim(
+        claim(
             "return to repose",
             "Returning to the repose slope needs no second layer.",
-            Verdict.AGREE if returns else Verdict.DISAGREE,
+            returns,
             f"the control ends at S - Sc = {steep.one_variable:g} from S0 - Sc = "
-            f"{EXCESSES[-1]:g} and at {gentle.one_variable:g} from {EXCESSES[0]:g}, where the "
-            f"two-layer automaton keeps {gentle.automaton:g} and BCRE {gentle.pde:g}",
-            tolerance,
+            f"{EXCESSES[-1]:g} and at {gentle.one_variable:g} from {EXCESSES[0]:g}; from "
+            f"{EXCESSES[0]:g} the two-layer automaton ends at {gentle.automaton:g} and BCRE at "
+            f"{gentle.pde:g}",
         ),
-        Claim(
+        claim(
             "decay of roughness",
             "Smoothing needs no second layer.",
-            Verdict.AGREE if rough.one_variable < 1 - TOLERANCE else Verdict.DISAGREE,
-            f"the RMS of rough_slope falls to {rough.one_variable:g} of its start in the "
-            f"control, to {rough.automaton:g} in the two-layer automaton, and to "
-            f"{rough.pde:g} in BCRE with kappa = 0",
-            tolerance,
+            rough.one_variable < 1 - TOLERANCE,
+            f"of the RMS of rough_slope {rough.one_variable:g} is left in the control, "
+            f"{rough.automaton:g} in the two-layer automaton and {rough.pde:g} in BCRE with "
+            "kappa = 0",
         ),
-        Claim(
+        claim(
             "uphill reach",
             "With the second layer the surface changes farther uphill of a pulse than without.",
-            Verdict.AGREE
-            if far.one_variable < far.automaton - TOLERANCE * abs(far.automaton)
-            else Verdict.DISAGREE,
+            far.one_variable < far.automaton - TOLERANCE * abs(far.automaton),
             f"in figure 3 it changes from {far.one_variable:g} above the pulse's centre in the "
             f"control, {far.automaton:g} in the two-layer automaton, {far.pde:g} in BCRE",
-            tolerance,
         ),
-        Claim(
+        claim(
             "second critical angle",
             "A slope that stands above repose until it is disturbed needs the second layer.",
-            Verdict.AGREE if returns and stands else Verdict.DISAGREE,
-            f"undisturbed, S0 - Sc = {EXCESSES[-1]:g} falls to "
-            f"{slopes[EXCESSES[-1], 0.0].one_variable:g} in the control, so that Sc is its only "
-            f"critical slope, and stays at {slopes[EXCESSES[-1], 0.0].automaton:g} in the "
-            f"two-layer automaton and {slopes[EXCESSES[-1], 0.0].pde:g} in BCRE",
-            tolerance,
+            returns and stands,
+            sentences(
+                f"undisturbed, S0 - Sc = {EXCESSES[-1]:g} ends at {still.one_variable:g} in the "
+                f"control, {still.automaton:g} in the two-layer automaton and {still.pde:g} in "
+                "BCRE",
+                when(returns, "Sc is the control's only critical slope"),
+            ),
         ),
     ]
 

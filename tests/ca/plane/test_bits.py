@@ -7,6 +7,7 @@ import pytest
 
 from bcre_ca import step as step_of_line
 from bcre_ca.plane import Plane, Run, Sand, evolve
+from bcre_ca.plane import run as run_module
 from bcre_ca.plane import step as plain_step
 
 FLOWS = ("tilted", "split4", "facet8", "d8")
@@ -46,7 +47,8 @@ def test_plane_without_walls_equals_plain_steps(plain_march, rng, shape, ends, s
 
 
 @pytest.mark.parametrize("flow", FLOWS[:3])
-def test_slabs_of_several_threads_equal_plain_steps(scene, plain_march, rng, flow):
+def test_slabs_of_several_threads_equal_plain_steps(scene, plain_march, rng, flow, monkeypatch):
+    monkeypatch.setattr(run_module, "SHARED_FROM", 0)
     for threads in (2, 3, 5):
         for _ in range(3):
             shape = int(rng.integers(60, 260)), int(rng.integers(1, 20))

@@ -41,12 +41,12 @@ def _is_positive(heights):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(error_model="numpy")
-def _begin_steps(f, cells, heights, w):  # type: ignore[no-untyped-def]
-    """Make ready for so many steps: what lies beyond the ends, the windows, the slabs."""
+def _begin_steps(f, cells, heights, w, most):  # type: ignore[no-untyped-def]
+    """Make ready for so many steps: what lies beyond the ends, the windows, ``most`` slabs."""
     if f.ends == PERIODIC:
         join(f)
     top, foot = widen(f, w.wet, cells, _is_positive(heights), len(heights), w.windows)
-    return cut(w.windows, top, foot, len(w.carry), 2 * w.reach * (len(heights) + 2), w.cuts)
+    return cut(w.windows, top, foot, most, 2 * w.reach * (len(heights) + 2), w.cuts)
 
 
 @numba.njit(error_model="numpy")
@@ -159,7 +159,7 @@ def _borrowed_work(w):  # type: ignore[no-untyped-def]
 
 
 def take_steps(part, s, f, K, cells, heights, w):  # type: ignore[no-untyped-def]
-    """All steps as a WHOLE, or a part of those together, which several threads can share out.
+    """All steps as a WHOLE (s = 0), or a part of those together, which several threads share out.
 
     BEGIN returns the number of slabs, of which SLAB takes one; then WEDGE makes up for what is left
     out at the cut below slab s, and END looks where it is wet now. Compiled by
@@ -169,13 +169,13 @@ def take_steps(part, s, f, K, cells, heights, w):  # type: ignore[no-untyped-def
     if part == WHOLE:
         for done in range(0, len(heights), w.together):
             some = heights[done : done + w.together]
-            if _begin_steps(f, cells, some, w) > 0:
+            if _begin_steps(f, cells, some, w, s + 1) > 0:
                 _slab(s, f, K, cells, some, w)
                 look(f, w.windows, w.cuts[0], w.cuts[1], w.wet)
             elif heights.shape[1] == 0:
                 break
     elif part == BEGIN:
-        _begin_steps(f, cells, heights, w)
+        _begin_steps(f, cells, heights, w, len(w.carry))
     elif part == SLAB:
         _slab(s, f, K, cells, heights, w)
     elif part == WEDGE:

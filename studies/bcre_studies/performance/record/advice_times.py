@@ -11,6 +11,7 @@ import statistics
 from typing import Any
 
 import pandas as pd
+from rich.console import Console
 from rich.progress import track
 
 from bcre_studies.advisor.advise import Effort, advise
@@ -46,7 +47,9 @@ def time_hits() -> pd.DataFrame:
     once all is compiled.
     """
     rows = []
-    for index in track(range(SCENES), "advice, times", transient=True):
+    for index in track(
+        range(SCENES), "advice, times", transient=True, console=Console(stderr=True)
+    ):
         question = Question(random_scene(index))
         for pilots, finest in (("all", FINEST), ("coarse", FEW)):
             effort = Effort(recorded(), seconds=PILOTS_S, finest=finest)

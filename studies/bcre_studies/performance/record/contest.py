@@ -33,6 +33,7 @@ from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, load
 
 WAVE = "nonlinear wave, exact"
+PAST_SCARP = "figure 1, past its scarp"
 PDE_TOLERANCE = 1e-5
 """Local error in time per step; what it leaves is below the error in space on all these grids."""
 
@@ -51,7 +52,7 @@ def scenes() -> dict[str, Scene]:
     figure1 = load("figure1")
     return {
         "figure 1, before its scarp": figure1.with_changes(until=150.0),
-        "figure 1, past its scarp": figure1.with_changes(until=250.0, kappa=0.005),
+        PAST_SCARP: figure1.with_changes(until=250.0, kappa=0.005),
         "figure 2": load("figure2"),
         "figure 3": load("figure3"),
         WAVE: load("climbing_wave"),
@@ -263,8 +264,13 @@ def _front(x: Array, R: Array) -> float:
 def rungs(
     contender: Contender, scene: Scene, most: float | None = None
 ) -> Iterator[tuple[int, Solve, EndState]]:
-    """Ever finer grids with what the contender made of them, up to ``most`` cell-steps."""
+    """Ever finer grids with what the contender made of them, up to ``most`` cell-steps.
+
+    They begin with the first that can hold the start of the scene.
+    """
     cells, most = contender.coarsest, min(contender.most, most or contender.most)
+    while not scene.holds(cells):
+        cells *= contender.finer
     while True:
         solve = contender.prepare(scene, cells)
         end = solve()

@@ -40,7 +40,7 @@ from bcre_studies.models.registry import HEIGHT_ONLY
 from bcre_studies.models.run import Run, frame_times
 from bcre_studies.performance.record import specialisation
 from bcre_studies.scenes.domain import Array
-from bcre_studies.scenes.scene import Scene
+from bcre_studies.scenes.scene import Scene, SceneError
 from bcre_studies.timing import costs
 
 D, V, GAMMA, KAPPA = "D", "v", "gamma", "kappa"
@@ -91,7 +91,7 @@ class Trial:
 
 
 class Refused(ArithmeticError):  # noqa: N818 - named for what happened
-    """The model cannot be run: its step is not stable."""
+    """The model cannot be run: its step is not stable, or its cells do not hold the start."""
 
 
 def run(scene: Scene, model: Model) -> Trial:
@@ -100,7 +100,7 @@ def run(scene: Scene, model: Model) -> Trial:
     Raises
     ------
     Refused
-        where the step is not stable, at the start or later.
+        where the step is not stable, at the start or later, or the cells do not hold the start.
     """
     if LAYER in model.without:
         return _of_height_alone(scene)
@@ -108,7 +108,7 @@ def run(scene: Scene, model: Model) -> Trial:
         if NONLINEARITY in model.without:
             return _on_frozen_slope(scene, model)
         return _stepped(scene, model)
-    except (bcre_ca.UnstableStep, FloatingPointError) as failure:
+    except (bcre_ca.UnstableStep, FloatingPointError, SceneError) as failure:
         raise Refused(str(failure)) from None
 
 

@@ -39,11 +39,11 @@ CELL_PECLET = (1.0, 0.5, 0.25)
 """Cells of the PDE's three grids, v dx/D; R varies as e^(v x/2D) about the place of release."""
 
 
-def measure_sd_automaton(material: bcre_pde.Material, d: float) -> float:
-    """Sd - Sc of the automaton with cells of length d; v, D, gamma > 0."""
+def upwind_rule(material: bcre_pde.Material, d: float) -> bcre_ca.Rule:
+    """The paper's automaton with cells of length d and the usual step; v, D, gamma > 0."""
     v, D, gamma, Sc = _positive(material)
     dt = bcre_ca.MARGIN * max_stable_step(v, D, gamma, d)
-    return measure_sd_of(bcre_ca.Rule(v, D, gamma, Sc, d, dt))
+    return bcre_ca.Rule(v, D, gamma, Sc, d, dt)
 
 
 def calibrated_rule(material: bcre_pde.Material, d: float) -> bcre_ca.Rule:
@@ -59,7 +59,7 @@ def calibrated_rule(material: bcre_pde.Material, d: float) -> bcre_ca.Rule:
     return replace(rule, dt=usual if usual > least else (least + bound) / 2)
 
 
-def measure_sd_of(rule: bcre_ca.Rule) -> float:
+def measure_sd_automaton(rule: bcre_ca.Rule) -> float:
     """Sd - Sc of an upwind or calibrated rule with diffusion left.
 
     Released in one cell. What sigma_abs leaves out is of order d^2/(16 D' t1 t2) with the weighted

@@ -11,7 +11,6 @@ slope smooths, to first order as
 
     kappa_eff = (gamma d/2)(1 - c), c = gamma R0 dt/d        D_eff = D + (v d/2)(1 - v dt/d)
 
-* All modes of u are read off one run of 32 waves of 1e-6, all modes of R off one spreading pulse.
 * Decay rates are compared relative to the automaton's own, since BCRE's may be zero; phase speeds
   relative to gamma R0 and v.
 * The scene ``rough_slope`` has waves of finite height: compared is the root mean square of u.
@@ -24,140 +23,58 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-import bcre_ca.theory
-import bcre_pde.theory
 from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.compare import compare_each
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict, worst
-from bcre_studies.models.automaton import rule_of
+from bcre_studies.comparison.wording import sentences, when
 from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED, EFFECTIVE, MODELS, Model
 from bcre_studies.models.run import Run
 from bcre_studies.observables import fronts
 from bcre_studies.reporting import style
-from bcre_studies.scenes.domain import Array
-from bcre_studies.scenes.scene import Scene, load
+from bcre_studies.scenes.scene import load
 from bcre_studies.scenes.terms import NOISE_WAVES
 from bcre_studies.sweeps.parallel import each
+from bcre_studies.validation.roughness_decay.modes import (
+    CELLS,
+    R_DECAY,
+    R_SPEED,
+    TOLERANCE,
+    U_DECAY,
+    U_SPEED,
+    WHY,
+    mode_rates,
+    mode_rows,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-TOLERANCE = 0.05
-WHY = "of a rate: after one decay time the amplitudes differ by less than 2 % of the initial one"
 LONG = 2 * np.pi / 12
 """Largest k d of a long wave, twelve cells: up to there the automaton differs from its modified
 equation by less than 5 %, by the part (k d)^2/12 of its decay and (k d)^2/6 of its speed."""
 THEORY_TOLERANCE = 1e-3
 THEORY_WHY = "both sides are linear; what is left is the finite height of the waves and rounding"
 
-CELLS = (1.0, 0.5)
-WAVES = (1, 2, 4, 8, 11, 16, 32)
-"""Wavelengths in the length of the domain, 100."""
-SPAN = 10.0
-R0 = 5.0
 HEIGHT = 0.1
 """Root mean square of the noise in the scene ``rough_slope``."""
 TIMES = tuple(float(t) for t in np.linspace(0, 200, 21))
 SHOWN = (50.0, 100.0, 200.0)
 
-U_DECAY, U_SPEED = "decay rate of u", "uphill speed of u"
-R_DECAY, R_SPEED = "decay rate of R", "downhill speed of R"
 RMS = "RMS of u on rough_slope"
 Row = dict[str, Any]
-
-
-def surface_scene(d: float) -> Scene:
-    """32 waves of the surface, 1e-6 high, under R0, with dt = d."""
-    return load("rough_slope").with_changes(
-        **{"cells": round(100 / d), "until": SPAN, "step": d},
-        **{"surface.1.amplitude": 1e-6, "rolling.0.amplitude": R0},
-    )
-
-
-def rolling_scene(d: float) -> Scene:
-    """A pulse on the smooth repose slope, where nothing is exchanged: every mode of R at once."""
-    return load("rough_slope").with_changes(
-        **{"cells": round(100 / d), "until": SPAN, "step": d, "surface.1.amplitude": 0.0},
-        **{"rolling.0.kind": "gaussian", "rolling.0.amplitude": 1.0},
-        **{"rolling.0.centre": 50.0, "rolling.0.width": 1.5},
-    )
-
-
-def wavenumbers(scene: Scene) -> Array:
-    """k of the modes that are measured, shape (K,)."""
-    return 2 * np.pi * np.array(WAVES) / scene.domain.length
 
 
 def run() -> dict[str, pd.DataFrame]:
     """Modes of u and R at d = 1 and d = 1/2, and the rough slope."""
     cases: list[tuple[str, float]] = [(field, d) for field in "uR" for d in CELLS]
-    modes = each(_modes, cases, "roughness_decay")
+    modes = each(mode_rows, cases, "roughness_decay")
     table, series = _rough_slope()
     return {
         "comparison": pd.DataFrame([row for rows in modes for row in rows] + table),
         "rough_slope": series,
     }
-
-
-def mode_rates(field: str, d: float, k: float) -> dict[Model, complex]:
-    """Closed forms s of one mode in every model."""
-    scene = surface_scene(d) if field == "u" else rolling_scene(d)
-    rule = rule_of(scene)
-    if field == "u":
-        rates = (
-            bcre_ca.theory.surface_mode_rate(rule.gamma, R0, d, rule.dt, k),
-            bcre_pde.theory.surface_mode_rate(rule.gamma, 0.0, R0, k),
-            bcre_pde.theory.surface_mode_rate(rule.gamma, rule.effective_curvature(R0), R0, k),
-        )
-    else:
-        rates = (
-            bcre_ca.theory.rolling_mode_rate(rule.v, rule.D, d, rule.dt, k),
-            bcre_pde.theory.rolling_mode_rate(rule.v, rule.D, k),
-            bcre_pde.theory.rolling_mode_rate(rule.v, rule.effective_diffusion(), k),
-        )
-    return dict(zip(COMPARED, rates, strict=True))
-
-
-def _modes(case: tuple[str, float]) -> list[Row]:
-    field, d = case
-    scene = surface_scene(d) if field == "u" else rolling_scene(d)
-    waves = wavenumbers(scene)
-    names = (U_DECAY, U_SPEED) if field == "u" else (R_DECAY, R_SPEED)
-    uphill = 1 if field == "u" else -1
-
-    def split(rate: complex, k: float) -> tuple[float, float]:
-        return -rate.real, uphill * rate.imag / k
-
-    def measured(run: Run) -> list[float]:
-        before, after = getattr(run, field)
-        return [
-            part
-            for k in waves
-            for part in split(fronts.mode_rate(run.x, before, after, SPAN, k), k)
-        ]
-
-    rates = [mode_rates(field, d, k) for k in waves]
-    own, nominal = (
-        [part for rate, k in zip(rates, waves, strict=True) for part in split(rate[model], k)]
-        for model in (AUTOMATON, BCRE)
-    )
-    # BCRE's decay rate may be zero, its phase speed may not.
-    scales = [value for pair in zip(own[::2], nominal[1::2], strict=True) for value in pair]
-    results = compare_each(scene, [0.0, SPAN], measured, scales, TOLERANCE, finest=800)
-    rows = [
-        {
-            "quantity": names[index % 2],
-            "d": d,
-            "k": significant(waves[index // 2], 5),
-            "k d": significant(waves[index // 2] * d, 5),
-            "t": np.nan,
-            **result.row(own[index], nominal[index]),
-        }
-        for index, result in enumerate(results)
-    ]
-    return rows[::2] + rows[1::2]
 
 
 def _rough_slope() -> tuple[list[Row], pd.DataFrame]:
@@ -210,6 +127,7 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     return [
         _surface_claim(long[long["quantity"] == U_DECAY]),
         _rolling_claim(long[long["quantity"] == R_DECAY]),
+        *(_cause_claim(long[long["quantity"] == q], where) for q, where in CAUSES),
         _speed_claim(long[long["quantity"].isin([U_SPEED, R_SPEED])]),
         _short_claim(short),
         _theory_claim(modes),
@@ -225,16 +143,26 @@ def _claim(name: str, statement: str, rows: pd.DataFrame, evidence: str) -> Clai
 def _surface_claim(rows: pd.DataFrame) -> Claim:
     coarse = rows[rows["d"] == 1].iloc[-1]
     fine = rows[(rows["d"] < 1) & (rows["k"] == coarse["k"])].iloc[0]
+    still = rows.pde.abs().max()
+    verdict = worst(rows["verdict"])
     return _claim(
         "roughness of the surface, long waves",
         "Roughness of the surface decays in the automaton as it does in BCRE.",
         rows,
-        f"BCRE with kappa = 0 only carries it uphill (largest rate found "
-        f"{rows.pde.abs().max():.0e}), the automaton smooths it: at k = {coarse['k']:.2g} by "
-        f"{coarse.automaton:.2g} per time at d = 1 and {fine.automaton:.2g} at "
-        f"d = {fine['d']:g}. That is its cell size, not a property of sand: BCRE with "
-        f"kappa_eff = (gamma d/2)(1 - c) has the same rates within "
-        f"{rows['difference_effective'].max():.1g}",
+        sentences(
+            f"largest decay rate in BCRE with kappa = 0: {still:.0e}; in the automaton at "
+            f"k = {coarse['k']:.2g}: {coarse.automaton:.2g} at d = 1 and {fine.automaton:.2g} at "
+            f"d = {fine['d']:g}; with kappa_eff = (gamma d/2)(1 - c) BCRE's rates differ by "
+            f"{rows['difference_effective'].max():.1g} at most",
+            when(
+                still < TOLERANCE * rows.automaton.min(),
+                "BCRE only carries roughness of the surface uphill",
+            ),
+            when(
+                verdict is Verdict.EXPLAINED and fine.automaton < coarse.automaton,
+                "the automaton's smoothing goes with its cell and is no property of sand",
+            ),
+        ),
     )
 
 
@@ -244,8 +172,25 @@ def _rolling_claim(rows: pd.DataFrame) -> Claim:
         "roughness of the rolling layer, long waves",
         "Roughness of the rolling layer decays in the automaton as it does in BCRE.",
         rows,
-        f"both decay; of the automaton's rate D alone leaves out {nominal[CELLS[0]]:.2g} at d = 1 "
-        f"and {nominal[CELLS[1]]:.2g} at d = {CELLS[1]:g}, D_eff no more than {left.max():.1g}",
+        f"smallest decay rates {rows.automaton.min():.2g} in the automaton and {rows.pde.min():.2g}"
+        f" in BCRE; of the automaton's rate D alone leaves out {nominal[CELLS[0]]:.2g} at d = 1 "
+        f"and {nominal[CELLS[1]]:.2g} at d = {CELLS[1]:g}, D_eff at most {left.max():.1g}",
+    )
+
+
+CAUSES = ((U_DECAY, "surface"), (R_DECAY, "rolling layer"))
+
+
+def _cause_claim(rows: pd.DataFrame, where: str) -> Claim:
+    """BCRE with kappa = 0 has no other term that could smooth."""
+    share = rows.pde / rows.automaton
+    return Claim(
+        f"diffusion smooths the {where}",
+        f"The diffusion term of the model smooths the {where}.",
+        Verdict.AGREE if (share >= TOLERANCE).all() else Verdict.DISAGREE,
+        f"of the automaton's decay rate BCRE with kappa = 0 has {share.min():.2g} to "
+        f"{share.max():.2g}",
+        f"at least {TOLERANCE:.0%} of the automaton's rate: less would not be seen in it",
     )
 
 
@@ -256,7 +201,7 @@ def _speed_claim(rows: pd.DataFrame) -> Claim:
         "Roughness of u is carried uphill at gamma R0, that of R downhill at v, in both models.",
         rows,
         f"largest difference {largest[U_SPEED]:.2g} for u and {largest[R_SPEED]:.1g} for R, at "
-        f"k d = {rows['k d'].max():.2g}; neither D_eff nor kappa_eff touches a speed",
+        f"k d up to {rows['k d'].max():.2g}",
     )
 
 
@@ -266,12 +211,12 @@ def _short_claim(rows: pd.DataFrame) -> Claim:
         "short waves",
         "Waves of less than twelve cells decay and travel in the automaton as in BCRE.",
         rows,
-        f"at k d = {shortest['k d'].iloc[0]:.2g} kappa_eff overstates the decay of u by "
-        f"{shortest.loc[U_DECAY, 'difference_effective']:.2g} of the automaton's rate, which "
-        f"saturates, and u climbs at {shortest.automaton[U_SPEED]:.2g} instead of "
-        f"{shortest.pde[U_SPEED]:.2g}; for R the decay is off by "
-        f"{shortest.loc[R_DECAY, 'difference_effective']:.1g} with D_eff, the speed by "
-        f"{shortest.loc[R_SPEED, 'difference']:.2g}. No coefficient of BCRE mends that",
+        f"at k d = {shortest['k d'].iloc[0]:.2g}, automaton against BCRE with D_eff and kappa_eff: "
+        + "; ".join(
+            f"{quantity} {shortest.automaton[quantity]:.2g} against "
+            f"{shortest.pde_effective[quantity]:.2g}"
+            for quantity in (U_DECAY, U_SPEED, R_DECAY, R_SPEED)
+        ),
     )
 
 
@@ -303,9 +248,9 @@ def _rough_slope_claim(rows: pd.DataFrame) -> Claim:
         rows,
         f"of a root mean square of {HEIGHT:g} at the start {last.automaton:.2g} is left at "
         f"t = {last['t']:g} in the automaton, {last.pde:.3g} in BCRE with kappa = 0 and "
-        f"{last.pde_effective:.2g} with D_eff and kappa_eff, which are never off by more than "
-        f"{rows['difference_effective'].max():.1g} of the start. The linear modes of the automaton "
-        f"add up to {last.automaton_theory:.2g}",
+        f"{last.pde_effective:.2g} with D_eff and kappa_eff (at most "
+        f"{rows['difference_effective'].max():.1g} of the start off at any time). The automaton's "
+        f"linear modes give {last.automaton_theory:.2g}",
     )
 
 
