@@ -45,6 +45,7 @@ STUDIES = {
     "agreement_map": Entry(
         "validation.agreement_map.study", "Where in its parameters does the automaton agree?"
     ),
+    "sensitivity": Entry("validation.sensitivity", "Which parameter moves which property?"),
     "avalanche_statistics": Entry(
         "validation.avalanche_statistics.study", "Avalanches under slow driving: is there a scale?"
     ),
