@@ -12,12 +12,14 @@ intervals over the sample.
 The scene is figure 1, a pulse 15 from the foot of a slope of 100, until t = 2000. v, D, gamma, d
 and the pulse are drawn evenly in the logarithm around figure 1's values, Sc and S0 evenly; dt is a
 share of the largest stable step. Observables, one for each of the paper's properties: the slope
-S - Sc that is left, the roughness of the surface, how far uphill it changes, and whether the
-avalanche runs to the top.
+S - Sc that is left, the roughness of the surface (its logarithm, as it spans decades), how far
+uphill the surface changes, and whether the avalanche runs to the top.
 """
 
 from __future__ import annotations
 
+import math
+import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -37,7 +39,7 @@ from bcre_studies.sweeps.parallel import each
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-SAMPLE, SEED = 512, 5
+SAMPLE, SEED = 1024, 5
 """Points of the Sobol sequence; each takes ten runs."""
 
 TOGETHER = 64
@@ -56,10 +58,13 @@ PARAMETERS: dict[str, Any] = {
 }
 OBSERVABLES = {
     "slope": "S - Sc that is left",
-    "roughness": "roughness of the surface",
+    "roughness": "log of the roughness",
     "reach": "reach uphill",
     "top": "runs to the top",
 }
+
+SMOOTHEST = 1e-6
+"""A length; a surface that is smoother counts as so rough, as its logarithm has no end."""
 
 SMALL = 0.05
 WHY = "of the variance: a twentieth, as in every comparison"
@@ -74,18 +79,27 @@ def run() -> dict[str, pd.DataFrame]:
         dists=list(PARAMETERS.values()),
         rng=np.random.default_rng(SEED),
     )
-    intervals = indices.bootstrap(CONFIDENCE, n_resamples=RESAMPLES)
+    with np.errstate(invalid="ignore"), warnings.catch_warnings(action="ignore"):
+        intervals = indices.bootstrap(CONFIDENCE, n_resamples=RESAMPLES)  # degenerate for a 0
     rows = []
     for i, observable in enumerate(OBSERVABLES):
         for j, parameter in enumerate(PARAMETERS):
             row: dict[str, Any] = {"observable": observable, "parameter": parameter}
             for kind in ("first_order", "total_order"):
                 interval = getattr(intervals, kind).confidence_interval
-                row[kind] = round(float(getattr(indices, kind)[i, j]), 3) + 0.0
-                row[f"{kind}_low"] = round(float(interval.low[i, j]), 3) + 0.0
-                row[f"{kind}_high"] = round(float(interval.high[i, j]), 3) + 0.0
+                value = float(getattr(indices, kind)[i, j])
+                row |= _with_interval(kind, value, interval.low[i, j], interval.high[i, j])
             rows.append(row)
     return {"comparison": pd.DataFrame(rows)}
+
+
+def _with_interval(name: str, value: float, low: float, high: float) -> dict[str, float]:
+    """Rounded to the third place; where no resample differs there is no interval but the value."""
+    ends = {"low": low, "high": high}
+    row = {name: value} | {
+        f"{name}_{end}": value if math.isnan(at) else float(at) for end, at in ends.items()
+    }
+    return {key: round(number, 3) + 0.0 for key, number in row.items()}
 
 
 def _observables(points: Array) -> Array:
@@ -126,7 +140,8 @@ def measure(
     times = [0.0, scene.time.until]
     frames = bcre_ca.frames(start, rule_of(scene), times, scene.domain.ends, margin=dt)
     run = run_of(scene, list(frames))
-    return (named.slope(run) - Sc, named.roughness(run), named.reach(run), named.top(run))
+    roughness = math.log10(max(named.roughness(run), SMOOTHEST))
+    return (named.slope(run) - Sc, roughness, named.reach(run), named.top(run))
 
 
 def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:

@@ -14,7 +14,8 @@ def _agreement(tables: Tables) -> list[str]:
     return [
         "Scenes drawn from a Latin hypercube of all dimensionless groups run in both models; "
         "rules that are derived beforehand are tried on them.",
-        f"{percent(shares['agree'])} agree to 5 % in R, {percent(shares['explained by cell size'])} "
+        f"{percent(shares['agree'])} agree to 5 % in R, "
+        f"{percent(shares['explained by cell size'])} "
         f"once D_eff and κ_eff are counted; width, place and mass of a thin pulse predict which in "
         f"{percent(right['width, place and mass'])}.",
         f"A finite pulse runs to the top from a slope on that is {span_of(slopes['difference'])} "
@@ -71,8 +72,8 @@ STORIES: dict[str, Story] = {
     "avalanche_statistics": Story(
         "Do avalanches under slow driving have a size of their own?",
         ("tilting: u + dS (L - x)",),
-        "The sawtooth of the slope, also beside BCRE; start slopes over length; sizes under tilting "
-        "and under feeding; small avalanches against their prediction.",
+        "The sawtooth of the slope, also beside BCRE; start slopes over length; sizes under "
+        "tilting and under feeding; small avalanches against their prediction.",
         _avalanches,
     ),
 }
