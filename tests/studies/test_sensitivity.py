@@ -1,4 +1,4 @@
-"""Which parameter moves which property: what drops out, what is counted, what the claims hang on."""
+"""Which parameter moves which property: what drops out, and what the claims hang on."""
 
 import numpy as np
 import pandas as pd
