@@ -21,6 +21,7 @@ LAYERS = (
     "verification",
     "performance",
     "reporting",
+    "on_plane",
     "advisor",
     "running",
     "sweeps",

@@ -206,6 +206,26 @@ def test_a_story_asks_and_tells_in_three_sentences_at_most_of_plain_words(name):
     assert all(formula(text).startswith("<math") for text in story.equations)
 
 
+CONDITIONS = [
+    ("printed_rule", "drifts at the v", lambda rows: rows["order"] == "synchronous", "drift"),
+    ("one_variable", "both two-layer models stand", lambda rows: rows["pde"] > 0.4, "pde"),
+    ("random_roughness", "is larger", lambda rows: rows["model"] == "pde", "low"),
+    ("uphill_propagation", "swept down", lambda rows: rows["quantity"] == "front speed V", "pde"),
+]
+
+
+@pytest.mark.parametrize(
+    ("name", "words", "of", "column"), CONDITIONS, ids=[c[0] for c in CONDITIONS]
+)
+def test_a_sentence_that_interprets_goes_when_its_condition_does(name, words, of, column):
+    found = committed(name)
+    assert words in " ".join(STORIES[name].tell(found))
+    rows = found["comparison"]
+    changed = rows[column].mask(of(rows), {"drift": 9.0, "pde": 0.0, "low": 0.1}[column])
+    tables = found | {"comparison": rows.assign(**{column: changed})}
+    assert words not in " ".join(STORIES[name].tell(tables))
+
+
 def test_a_study_without_a_story_is_told_by_its_docstring():
     story = story_of("new", "How new it is.\n\nMore.")
     assert (story.question, list(story.tell({}))) == ("How new it is", [])

@@ -14,6 +14,7 @@ import pandas as pd
 import pytest
 
 from bcre_studies import catalog, cli
+from bcre_studies.commands import study as study_command
 from bcre_studies.comparison.claim import Claim, quality_check
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON
@@ -77,7 +78,7 @@ def fake(places, monkeypatch):
     module = Fake()
     studies = {"fake": catalog.Entry("fake", TITLE)}
     monkeypatch.setitem(sys.modules, "bcre_studies.fake", module)
-    for place in (catalog, finding, store, write):
+    for place in (catalog, finding, store, study_command, write):
         monkeypatch.setattr(place, "STUDIES", studies)
     monkeypatch.setattr(write, "PAPER_CLAIMS", ())
     monkeypatch.setattr(write, "write_pages", pages_of_titles)

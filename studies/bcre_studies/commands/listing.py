@@ -11,10 +11,10 @@ from bcre_studies.commands.options import examples
 def list_all() -> None:
     """List the built-in scenes and the studies."""
     from bcre_studies.catalog import STUDIES
-    from bcre_studies.scenes.listing import built_in_names, built_in_title
+    from bcre_studies.scenes.listing import built_in_title, line_and_plane_names
 
     click.echo("Scenes (bcre run SCENE):")
-    for name in built_in_names():
+    for name in line_and_plane_names():
         click.echo(f"  {name:24}{built_in_title(name)}")
     click.echo("Studies (bcre study NAME):")
     for name, entry in STUDIES.items():

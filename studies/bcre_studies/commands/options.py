@@ -8,7 +8,7 @@ from typing import Any
 import click
 from click.shell_completion import CompletionItem
 
-from bcre_studies.scenes.listing import built_in_names
+from bcre_studies.scenes.listing import line_and_plane_names
 
 
 class SceneName(click.ParamType[str]):
@@ -19,7 +19,7 @@ class SceneName(click.ParamType[str]):
     def shell_complete(
         self, ctx: click.Context, param: click.Parameter, incomplete: str
     ) -> list[CompletionItem]:
-        names = [name for name in built_in_names() if name.startswith(incomplete)]
+        names = [name for name in line_and_plane_names() if name.startswith(incomplete)]
         return [*map(CompletionItem, names), CompletionItem(incomplete, type="file")]
 
 

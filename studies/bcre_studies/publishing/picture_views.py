@@ -9,6 +9,7 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
+import bcre_pde
 from bcre_studies.publishing.live_scenes import slope_and_pulse
 from bcre_studies.publishing.pictures import space_time
 from bcre_studies.publishing.pictures.answer import answer
@@ -29,7 +30,9 @@ def picture_views(tables: Mapping[str, Tables]) -> list[dict[str, Any]]:
     scene = load("figure1")
     slope, pulse = slope_and_pulse(scene)
     paper = pulse.amplitude, slope - scene.material.Sc
-    angle = math.degrees(math.atan(slope))
+    m = scene.material
+    Sd = bcre_pde.second_critical_slope(m.v, m.D, m.gamma, m.Sc)
+    angle, critical = (math.degrees(math.atan(value)) for value in (slope, Sd))
     return [
         _view(
             "answer",
@@ -67,12 +70,13 @@ def picture_views(tables: Mapping[str, Tables]) -> list[dict[str, Any]]:
             "the top: lowest in the automaton with d = 1, higher with d = 1/4, highest in BCRE.",
             "A pulse at the foot of a slope, figure 1’s material. Above a line it climbs to the "
             "top and the whole slope comes down to repose. To the left, where pulses vanish, the "
-            "lines end at Sd. The star is the paper’s figure 1 with our slope, one of "
-            f"{angle:.0f} degrees: sand is not so steep, but the paper’s γ and v ask for it.",
+            "lines end at Sd. The star is figure 1 with the slope that we chose, "
+            f"{angle:.0f} degrees. Sand is not so steep, but the paper’s coefficients put BCRE’s "
+            f"Sd at {critical:.0f} degrees.",
         ),
         _view(
             "shares",
-            "How much of the difference is cell size",
+            "How much of the difference cell size explains",
             shares(tables["modified_equation"]["comparison"]),
             "For seven scenes and three cell lengths the difference of the rolling layer from "
             "BCRE, and what is left of it once the cells’ diffusion and curvature are counted.",

@@ -31,11 +31,11 @@ SIGNS = {"full": "●", "half": "◐", "cross": "✕", "open": "?"}
 GROUPS = {
     "validation": (
         "What sand does",
-        "The paper’s figures and properties, in both models, from the same sand.",
+        "The paper’s figures and properties, in both models, from the same initial state.",
     ),
     "verification": (
         "Is it computed right?",
-        "Against closed forms and exact solutions, and where nothing was made to be easy.",
+        "Against closed forms and exact solutions, and in hard cases.",
     ),
     "performance": (
         "How fast",

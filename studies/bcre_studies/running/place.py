@@ -9,8 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from bcre_studies.scenes.listing import built_in_names
-from bcre_studies.scenes.scene import Scene, SceneError
+from bcre_studies.scenes.listing import path_of
+from bcre_studies.scenes.plane.scene import PlaneScene
+from bcre_studies.scenes.refusal import SceneError
+from bcre_studies.scenes.scene import Scene
 from bcre_studies.system.release import release
 
 FILES = PROFILES, SUMMARY = "profiles.csv", "summary.json"
@@ -35,14 +37,14 @@ class Origin:
         """What results are called after."""
         return Path(self.scene).stem
 
-    def inputs(self, scene: Scene) -> list[Path]:
+    def inputs(self, scene: Scene | PlaneScene) -> list[Path]:
         """The scene's own file, if it is not built in, and its tables."""
-        own = [] if self.scene in built_in_names() else [Path(self.scene)]
+        own = [] if path_of(self.scene) else [Path(self.scene)]
         return own + scene.tables()
 
     def seen_from(self, folder: Path) -> str:
         """The built-in name, or the path of the file from ``folder``: it moves with the project."""
-        if self.scene in built_in_names():
+        if path_of(self.scene):
             return self.scene
         path = Path(self.scene).absolute()
         try:
@@ -50,7 +52,7 @@ class Origin:
         except ValueError:  # on another drive
             return path.as_posix()
 
-    def record(self, scene: Scene, folder: Path) -> dict[str, Any]:
+    def record(self, scene: Scene | PlaneScene, folder: Path) -> dict[str, Any]:
         """What it takes to repeat a run, for the summary that is kept in ``folder``."""
         seeds = [term.seed for term in scene.surface if term.kind == "noise"]
         return {

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, get_args
 
 from bcre_studies.system.one_line import one_line
 
@@ -32,15 +33,21 @@ def refuse_long_integers(data: dict[str, Any]) -> None:
             )
 
 
-def first_of(failure: ValidationError) -> str:
-    """The first thing that pydantic found."""
+def kinds_of(union: Any) -> tuple[str, ...]:
+    """The kinds that tell the terms of a union from one another."""
+    members = get_args(get_args(union)[0])
+    return tuple(get_args(member.model_fields["kind"].annotation)[0] for member in members)
+
+
+def first_of(failure: ValidationError, kinds: Mapping[str, tuple[str, ...]]) -> str:
+    """The first thing that pydantic found; ``kinds`` of each list of terms."""
     errors = failure.errors()
     # Of a choice (a number or "auto") every alternative reports; the first one speaks for all.
     error = errors[0]
     message = " ".join(error["msg"].removeprefix("Value error, ").split())
     if error["type"] == "value_error":
         return message
-    variants = {"incline", "sine", "noise", "table", "gaussian", "uniform"}
+    variants = {kind for names in kinds.values() for kind in names}
     key = ".".join(str(part) for part in error["loc"] if part not in variants)
     if error["loc"][-1:] == ("constrained-float",) or "literal" in str(error["loc"][-1]):
         key = ".".join(str(part) for part in error["loc"][:-1])
@@ -49,10 +56,7 @@ def first_of(failure: ValidationError) -> str:
         return f"{key}: missing; this key is required"
     if error["type"].startswith("union_tag"):
         kind = error["input"].get("kind") if isinstance(error["input"], dict) else error["input"]
-        surfaces = key.startswith("surface")
-        expected = (
-            "'incline', 'sine', 'noise', 'table'" if surfaces else "'gaussian', 'uniform', 'table'"
-        )
+        expected = ", ".join(map(repr, kinds[str(error["loc"][0])]))
         return f"{key}.kind = {_short(kind)}: must be one of {expected}"
     if error["type"] == "extra_forbidden":
         return f"{key} = {_short(error['input'])}: no such key is allowed here"

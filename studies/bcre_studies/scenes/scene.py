@@ -7,7 +7,6 @@ refused with a line that names the key, the value and what is allowed.
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -16,9 +15,8 @@ import numpy as np
 from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
 from bcre_studies.scenes.domain import Array, Domain, NonNegative, Positive, StrictTable
-from bcre_studies.scenes.listing import BUILT_IN, built_in_names
 from bcre_studies.scenes.refusal import SceneError as SceneError
-from bcre_studies.scenes.refusal import first_of, refuse_long_integers
+from bcre_studies.scenes.refusal import first_of, kinds_of, refuse_long_integers
 from bcre_studies.scenes.tables import ProfileError
 from bcre_studies.scenes.terms import (
     RollingTerm,
@@ -27,13 +25,8 @@ from bcre_studies.scenes.terms import (
     TableRolling,
     TableSurface,
 )
+from bcre_studies.scenes.toml_file import assign, is_on_plane, read
 from bcre_studies.system.memory import NotEnoughMemoryError
-
-LONGEST = 100_000
-"""Bytes of a scene file; it is a page of text, long profiles belong into tables."""
-
-WIDEST = 1_000
-"""Characters of one of its lines; keys of very many parts would take hours to be read."""
 
 
 class SceneMaterial(StrictTable):
@@ -181,21 +174,14 @@ def load(source: str | Path, overrides: Sequence[str] = ()) -> Scene:
     (2.5, 0.2, 1.0)
     >>> load("figure2", overrides=["D=-1"])
     Traceback (most recent call last):
-    bcre_studies.scenes.scene.SceneError: material.D = -1: must be greater than or equal to 0
+    bcre_studies.scenes.refusal.SceneError: material.D = -1: must be greater than or equal to 0
     """
-    path = Path(source)
-    if str(source) in built_in_names():
-        path = BUILT_IN / f"{source}.toml"
-    text, folder = _read(path), path.parent
-    try:
-        data = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
-        raise SceneError(f"{source}: not a TOML file: {error}") from None
-    for assignment in overrides:
-        key, separator, value = assignment.partition("=")
-        if not separator:
-            raise SceneError(f"--set {assignment!r}: must be key=value")
-        _assign(data, key.strip(), _toml_value(value.strip()))
+    data, folder = read(source, overrides, SECTIONS)
+    if is_on_plane(data):
+        raise SceneError(
+            f"{source}: is a scene on a plane, which bcre run takes; this command takes scenes on "
+            "a line, without domain.width and grids"
+        )
     return _validated(data, folder)
 
 
@@ -203,7 +189,7 @@ def override(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     """A copy of the scene with the values at the given keys replaced."""
     data = scene.model_dump(exclude_unset=True, mode="json")
     for key, value in changes.items():
-        _assign(data, key, value)
+        assign(data, key, value, SECTIONS)
     return _validated(data, scene._folder)
 
 
@@ -214,62 +200,7 @@ SECTIONS: dict[str, type[StrictTable]] = {
     "automaton": Automaton,
     "solver": Solver,
 }
-
-
-def _assign(data: dict[str, Any], key: str, value: Any) -> None:
-    """Set ``material.v``, ``rolling.0.width`` or a bare ``v``; the first section with it wins."""
-    parts = key.split(".")
-    if len(parts) == 1 and key != "title":
-        section = next(
-            (name for name, model in SECTIONS.items() if key in model.model_fields), None
-        )
-        if section is None:
-            allowed = dict.fromkeys(
-                field for model in SECTIONS.values() for field in model.model_fields
-            )
-            raise SceneError(
-                f"{key} = {value!r}: no such key; allowed are {', '.join(allowed)}, "
-                "or a path such as rolling.0.width"
-            )
-        parts = [section, key]
-    place: Any = data
-    for part in parts[:-1]:
-        if isinstance(place, list):
-            if not (part.isascii() and part.isdigit()) or int(part) >= len(place):
-                raise SceneError(f"{key} = {value!r}: {part} must be one of 0..{len(place) - 1}")
-            place = place[int(part)]
-        elif isinstance(place, dict):
-            place = place.setdefault(part, {})
-        else:
-            raise SceneError(f"{key} = {value!r}: no such key")
-    if not isinstance(place, dict):
-        raise SceneError(f"{key} = {value!r}: no such key")
-    place[parts[-1]] = value
-
-
-def _toml_value(text: str) -> Any:
-    try:
-        parsed = tomllib.loads(f"value = {text}")
-    except (ValueError, RecursionError):
-        return text
-    return parsed["value"] if len(parsed) == 1 else text
-
-
-def _read(path: Path) -> str:
-    names = ", ".join(built_in_names())
-    try:
-        if not path.is_file():
-            raise SceneError(f"{path}: no such scene; must be a TOML file or one of {names}")
-        if path.stat().st_size > LONGEST:
-            raise SceneError(f"{path}: must be a TOML file of at most {LONGEST} bytes")
-        text = path.read_text(encoding="utf-8")
-    except UnicodeDecodeError:
-        raise SceneError(f"{path}: must be UTF-8 text") from None
-    except OSError as error:
-        raise SceneError(f"{path}: cannot be read: {error.strerror}") from None
-    if max(map(len, text.splitlines()), default=0) > WIDEST:
-        raise SceneError(f"{path}: must be a TOML file with at most {WIDEST} characters a line")
-    return text
+KINDS = {"surface": kinds_of(SurfaceTerm), "rolling": kinds_of(RollingTerm)}
 
 
 def _validated(data: dict[str, Any], folder: Path) -> Scene:
@@ -277,7 +208,7 @@ def _validated(data: dict[str, Any], folder: Path) -> Scene:
     try:
         scene = Scene.model_validate(data)
     except ValidationError as failure:
-        raise SceneError(first_of(failure)) from None
+        raise SceneError(first_of(failure, KINDS)) from None
     scene._folder = folder
     try:
         with np.errstate(over="raise", divide="raise", invalid="raise"):

@@ -21,7 +21,7 @@ from typing import NamedTuple
 from bcre_studies.system.files import REPORTS
 
 LIBRARIES = ("numpy", "scipy", "numba", "py-pde", "pandas")
-DATA = (".toml", ".csv", ".j2")
+DATA = (".toml", ".csv", ".asc", ".j2")
 PACKAGES = {
     name: Path(str(getattr(find_spec(name), "origin", ""))).parent
     for name in ("bcre_ca", "bcre_pde", "bcre_studies")

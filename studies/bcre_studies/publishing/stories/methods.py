@@ -62,8 +62,8 @@ def _hard_cases(tables: Tables) -> list[str]:
     refused = rows["verdict"].str.startswith("refused")
     negative = numeric(rows["smallest_R"]) < 0
     return [
-        "Slopes that rise, dry cells, single cells, ten million steps: each in every scheme of the "
-        "automaton and in BCRE.",
+        "Slopes that rise, dry cells, single cells, ten million steps: each runs in every scheme "
+        "of the automaton and in BCRE.",
         f"Of {len(rows)} runs {int(ended.sum())} come to their end, {int(refused.sum())} are "
         f"refused before the start and {int((~ended & ~refused).sum())} stop on the way, saying "
         "where and why.",

@@ -56,7 +56,7 @@ def _random_roughness(tables: Tables) -> list[str]:
     rows = tables["comparison"].set_index("model")
     apart = rows.loc["automaton", "high"] < rows.loc[BCRE.column, "low"]
     return [
-        f"The same slope with {int(rows['seeds'].iloc[0])} random surfaces, one a seed.",
+        f"The same slope gets {int(rows['seeds'].iloc[0])} random surfaces, one for each seed.",
         f"In the mean {percent(rows.loc['automaton', 'mean'])} of the roughness is left in the "
         f"automaton, {percent(rows.loc[BCRE.column, 'mean'])} in BCRE, "
         f"{percent(rows.loc['pde_effective', 'mean'])} in BCRE with D_eff and κ_eff.",
@@ -64,7 +64,7 @@ def _random_roughness(tables: Tables) -> list[str]:
         f"{number(rows.loc['automaton', 'high'], 4)} and "
         f"{number(rows.loc[BCRE.column, 'low'], 4)} to "
         f"{number(rows.loc[BCRE.column, 'high'], 4)}: the difference is "
-        + ("no matter of the seed." if apart else "not larger than that between seeds."),
+        + ("larger than that between seeds." if apart else "no larger than that between seeds."),
     ]
 
 
@@ -100,11 +100,10 @@ def _critical(tables: Tables) -> list[str]:
         "finite pulses show from which slope on the avalanche climbs to the top.",
         f"At figure 1’s parameters Sd − Sc is {fixed(own)} in the automaton and {fixed(bcre)} in "
         f"BCRE; over all parameters it is {span_of(sd['difference'])} lower in the automaton.",
-        f"With a pulse of {number(float(large['pulse']))} the slope comes down from "
-        f"{fixed(float(large['automaton']))} on in the automaton and from "
-        f"{fixed(float(large[BCRE.column]))} on in BCRE, against "
-        f"{fixed(float(small['automaton']))} and {fixed(float(small[BCRE.column]))} for a "
-        "vanishing one.",
+        f"A pulse of {number(float(large['pulse']))} brings the slope down where S0 − Sc exceeds "
+        f"{fixed(float(large['automaton']))} in the automaton and "
+        f"{fixed(float(large[BCRE.column]))} in BCRE; a vanishing pulse needs "
+        f"{fixed(float(small['automaton']))} and {fixed(float(small[BCRE.column]))}.",
     ]
 
 
@@ -127,13 +126,13 @@ STORIES: dict[str, Story] = {
         _roughness_decay,
     ),
     "random_roughness": Story(
-        "Is the decay of roughness a matter of the seed?",
+        "Does the decay of roughness depend on the random surface?",
         ("RMS u(t) over RMS u(0)",),
         "Roughness left after the run, one mark a seed, for the three models.",
         _random_roughness,
     ),
     "uphill_propagation": Story(
-        "How do avalanches get uphill, and as fast in both models?",
+        "How do avalanches move uphill, and as fast in both models?",
         ("front: V = 2 sqrt(D sigma) - v", "surface wave: gamma R", "scarp: c = gamma H - v"),
         "Speed of the rolling front over slope, of the surface wave over γR, of the scarp over "
         "its height, and the reach of figure 3’s pulse.",

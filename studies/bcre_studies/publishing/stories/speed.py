@@ -49,7 +49,7 @@ def _scene_needs(tables: Tables) -> list[str]:
         "the scene changes by more than 1 % or 5 %.",
         f"Over {len(rows)} pairs of scene and question the cheapest model that stays within 5 % "
         f"costs {percent(float(cost.median()))} of the full one in the median.",
-        f"The dearest needs {percent(float(cost.max()))}.",
+        f"The most expensive pair needs {percent(float(cost.max()))}.",
     ]
 
 
