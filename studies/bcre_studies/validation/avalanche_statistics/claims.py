@@ -83,9 +83,10 @@ def _feeding(rows: pd.DataFrame) -> Claim:
         "sizes under feeding",
         "Under slow feeding one power law holds at every length of the slope.",
         Verdict.AGREE if same and better else Verdict.DISAGREE,
-        f"the best fits have exponents {told}, and a lognormal fits as well "
-        f"(p = {', '.join(f'{p:.1g}' for p in rows['p_lognormal'])}). The exponent drifts with "
-        f"the length, so that there is no finite-size scaling with one exponent",
+        f"the best fits have exponents {told}; "
+        + ("a power law fits better than" if better else "no fit is better than that of")
+        + f" a lognormal (p = {', '.join(f'{p:.1g}' for p in rows['p_lognormal'])})"
+        + ("" if same else ". The exponents differ, so that sizes do not scale with one of them"),
         WHY_LAW,
     )
 
@@ -129,8 +130,8 @@ def _start(rows: pd.DataFrame, critical: tuple[float, float]) -> Claim:
         Verdict.AGREE if near else Verdict.DISAGREE,
         f"it starts anywhere from S - Sc = {low:.2f} ({rows['start'].idxmin()}) to {high:.2f} "
         f"({rows['start'].idxmax()}), where Sd - Sc is {critical[0]:.3f} in the automaton and "
-        f"{critical[1]:g} in BCRE: the start is no constant of the material, it falls with the "
-        f"length, on which a trigger grows, and with the trigger",
+        f"{critical[1]:g} in BCRE"
+        + ("" if near else ": the start depends on length and trigger, not on the material alone"),
         f"{TOLERANCE:.0%} of Sd - Sc",
     )
 
@@ -145,8 +146,7 @@ def _all_the_sand(rows: pd.DataFrame) -> Claim:
         Verdict.AGREE if (1 - share).abs().max() <= SAND_ABOVE else Verdict.DISAGREE,
         f"it is {share.min():.2f} to {share.max():.2f} of that at four lengths, with S - Sc the "
         f"mean slope that the tilts between two add up to. That slope itself falls from "
-        f"{2 * above.max():.2f} to {2 * above.min():.2f}, so that sizes collapse by this one "
-        f"quantity and not by a power of the length",
+        f"{2 * above.max():.2f} to {2 * above.min():.2f}",
         f"{SAND_ABOVE:.0%}: what small avalanches carry off between two big ones",
     )
 
@@ -159,8 +159,8 @@ def _small(small: pd.DataFrame) -> Claim:
         "The small avalanches are amplified triggers, each predicted by its place and the slope.",
         Verdict.AGREE if error <= SMALL_ERROR * span else Verdict.DISAGREE,
         f"ln(size/trigger) of {len(small)} small avalanches is predicted to {error:.2f} (root mean "
-        f"square) over a range of {span:.1f}, {span / np.log(10):.1f} decades of size. Random "
-        f"places alone spread them so far: no criticality is needed for it",
+        f"square) over a range of {span:.1f}, {span / np.log(10):.1f} decades of size, from "
+        f"nothing but the slope and the place of the trigger",
         f"{SMALL_ERROR:.0%} of the range",
     )
 
@@ -173,9 +173,9 @@ def _controls(alone: pd.DataFrame, at_one_place: pd.DataFrame) -> Claim:
         "The oscillation needs the second layer.",
         Verdict.DISAGREE if oscillates else Verdict.AGREE,
         f"a pile of the height alone that stands at repose sheds the same at every tilt "
-        f"(sd {stands['size_sd']:.1g} of L^2). With angles of start and stop it oscillates too, "
-        f"every {sticks['gap']:.0f} +- {sticks['gap_sd']:.0f} tilts; but there the start is put "
-        f"in, and here it follows. With every trigger at one place the two-layer pile is strictly "
+        f"(sd {stands['size_sd']:.1g} of L^2). With angles of start and stop big ones come "
+        f"every {sticks['gap']:.0f} +- {sticks['gap_sd']:.0f} tilts, from the start that it is "
+        f"given. With every trigger at one place the two-layer pile is strictly "
         f"periodic (gaps vary by {at_one_place['gap_sd'].max():.2g} tilts)",
         "the control must oscillate for the claim to fall",
     )

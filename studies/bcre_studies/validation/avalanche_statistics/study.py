@@ -247,9 +247,8 @@ def _small_ones(series: list[Any]) -> pd.DataFrame:
 def _slopes(series: list[Any]) -> pd.DataFrame:
     """S - Sc before each tilt of some series."""
     shown = [(TILTED, f"L = {n}, trigger 0.1") for n in (32, 128)]
-    shown += [
-        (BESIDE, name) for name in ("automaton, d = 1", "BCRE, 64 cells", "effective, 64 cells")
-    ]
+    shown += [(BESIDE, f"{name}, {BCRE_CELLS[-1]} cells") for name in ("BCRE", "effective")]
+    shown += [(BESIDE, "automaton, d = 1")]
     shown += [(CONTROL, "start and stop")]
     rows = []
     for wanted in shown:
