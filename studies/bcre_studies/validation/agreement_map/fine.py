@@ -35,7 +35,7 @@ from bcre_studies.validation.agreement_map.study import (
 SCENES = 200_000
 FITTED_SHARE = 0.1
 
-PECLETS = (0.125, 0.25, 0.375, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0)
+PECLETS = (0.125, 0.25, 0.375, 0.5, 0.75, 1.0, 1.5, 2.0, 2.5)
 GRIDS = (120, 240)
 
 

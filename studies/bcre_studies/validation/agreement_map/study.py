@@ -66,7 +66,7 @@ ACCURATE = 0.95
 WHY_ACCURATE = "of the scenes: a rule that a user trusts may be wrong once in twenty"
 
 THICKNESSES = (1e-7, 1e-2, 0.1, 1.0)
-PECLETS = (0.25, 0.5, 1.0, 2.0, 4.0)
+PECLETS = (0.25, 0.5, 1.0, 1.5, 2.0)
 GRIDS = (60, 120)
 """BCRE's cells; what changes from one to the other is the error of a threshold."""
 
@@ -225,8 +225,8 @@ def _three_terms(table: pd.DataFrame, of_rule: list[Rule]) -> Claim:
         table.loc[("rule is right", by_terms.name)],
         f"the width r, the lag c d G and the lost mass G^2 dt/(2 t), their squares added, are "
         f"right of {{share}}; exact moments of {_share(exact)}, and they tell the three words "
-        f"apart in {_share(words)}. Least sure are thick pulses, a e^G > {THICK[1]:g}: there "
-        f"the two are right of {_share(thick[-2])} and {_share(thick[-1])}. How fine must d be? "
+        f"apart in {_share(words)}. Of thick pulses, a e^G > {THICK[1]:g}, the two are "
+        f"right of {_share(thick[-2])} and {_share(thick[-1])}. How fine must d be? "
         f"For {TOLERANCE:.0%} in R, d (1 - c) must not exceed {bound:.2g} (w^2/2 + 2 D t)/(v t), "
         f"which is {2 * bound:.2g} D/v once diffusion has outgrown the pulse, and where the pulse "
         f"grows dt must not exceed {2 * TOLERANCE:g} t/G^2",
