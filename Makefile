@@ -2,6 +2,18 @@
 SHELL := /bin/sh
 PYTHON ?= python3
 BIN := .venv/bin
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+
+# The environment is this folder's own, whatever the user's settings for others are.
+export PIP_USER := 0
+unexport PIP_TARGET PIP_PREFIX PYTHONPATH PYTHONHOME
+
+# A moved or copied environment runs the code of where it was made, or nothing: it is made again.
+RUNS := $(BIN)/python -I -c 'from importlib.util import find_spec; print(find_spec("bcre_studies").origin)'
+ifneq ($(shell $(RUNS) 2>/dev/null),$(CURDIR)/studies/bcre_studies/__init__.py)
+.PHONY: .venv/installed
+CLEAR := --clear
+endif
 
 .PHONY: help install reports speed maps test test-cluster docs faults bench check lint clean
 
@@ -11,10 +23,10 @@ help: ## list the targets
 install: .venv/installed ## create .venv with the locked dependencies
 
 .venv/installed: requirements.lock pyproject.toml
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo 'Python 3.11 or newer is needed: make PYTHON=python3.11' >&2; exit 2; }
-	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --require-hashes -r requirements.lock
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo 'Python 3.11 or newer is needed: make PYTHON=python3.11' >&2; exit 2; }
+	"$(PYTHON)" -m venv $(CLEAR) .venv
+	$(PIP) --no-compile --require-hashes -r requirements.lock
+	$(PIP) --no-deps --no-build-isolation -e .
 	@touch $@
 
 reports: install ## run all studies, write reports/; time them here, into reports/local/
@@ -30,18 +42,18 @@ maps: install ## the agreement map from 200,000 scenes (hours; SCHEDULER=tcp://h
 
 test: install ## run the tests; those of the page where Chromium is installed
 	@! command -v chromium >/dev/null || $(BIN)/python -c 'import playwright' 2>/dev/null \
-		|| $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --require-hashes -r requirements-browser.lock \
+		|| $(PIP) --no-compile --require-hashes -r requirements-browser.lock \
 		|| echo 'Playwright cannot be installed here: the page is not tried in a browser' >&2
 	$(BIN)/python -m pytest
 
 test-cluster: install ## run the sweeps' tests on a Dask scheduler with two workers on this machine
 	@$(BIN)/python -c 'import distributed' 2>/dev/null \
-		|| $(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-cluster.lock
+		|| $(PIP) --require-hashes -r requirements-cluster.lock
 	$(BIN)/python -m pytest -n 0 -o python_files='cluster_*.py' -o 'pythonpath=tests/robustness tests/cluster' tests/cluster
 
 docs: install ## build the documentation, docs/_build/index.html; a warning is an error
 	@$(BIN)/python -c 'import furo, myst_parser, sphinx' 2>/dev/null \
-		|| $(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-docs.lock
+		|| $(PIP) --require-hashes -r requirements-docs.lock
 	$(BIN)/python -m sphinx -b html -q -W --keep-going docs docs/_build
 
 faults: install ## try every fault again and write reports/quality/faults.csv
@@ -49,7 +61,7 @@ faults: install ## try every fault again and write reports/quality/faults.csv
 
 bench: install ## time the automaton against what would be used instead (under 3 minutes)
 	@$(BIN)/python -c 'import fipy' 2>/dev/null \
-		|| $(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-bench.lock \
+		|| $(PIP) --require-hashes -r requirements-bench.lock \
 		|| echo 'FiPy cannot be installed here: its benchmarks are skipped' >&2
 	$(BIN)/python -m pytest -o addopts='--import-mode=importlib -q --strict-markers' -o python_files='bench_*.py' -o python_functions='bench_*' tests/benchmarks
 

@@ -38,6 +38,9 @@ STUDIES = {
     "avalanche_extent": Entry(
         "validation.avalanche_extent", "What an avalanche moves: how much, how far, and when"
     ),
+    "choices": Entry(
+        "validation.choices", "Do the verdicts stand when our own choices are halved and doubled?"
+    ),
     "modified_equation": Entry(
         "verification.modified_equation",
         "How much of the difference is the automaton's own diffusion?",

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bcre_ca import Rule
@@ -61,14 +61,14 @@ def test_finer_cells_and_bcre_get_their_triggers_at_the_same_places():
     bcre = tilted_bcre(Tilting(cells=16, **wide), effective=False)
     assert (coarse.place == fine.place).all()
     assert (coarse.place == bcre.place).all()
-    assert np.allclose(coarse.size, bcre.size, rtol=0.05)
-    assert (np.abs(fine.size - bcre.size) < np.abs(coarse.size - bcre.size)).all()
+    assert np.allclose(coarse.size, bcre.size, rtol=0.01)
+    assert np.allclose(fine.size, bcre.size, rtol=0.01)
 
 
 def test_small_avalanches_on_a_straight_slope_are_amplified_as_predicted():
-    events = tilted(Tilting(64.0, 64, 1e-12, 40, seed=5, tilt=TILT))
+    events = tilted(Tilting(64.0, 64, 1e-6, 40, seed=5, tilt=TILT))
     predicted = amplification(events.slope) * (63 - np.floor(events.place))
-    assert np.allclose(np.log(events.size / 1e-12), predicted, atol=0.02 * predicted.max())
+    assert np.allclose(np.log(events.size / 1e-6), predicted, atol=0.05 * predicted.max())
 
 
 def test_amplification_is_none_at_repose_and_ends_at_the_second_critical_slope():
@@ -80,19 +80,18 @@ def test_amplification_is_none_at_repose_and_ends_at_the_second_critical_slope()
 
 
 def test_what_is_fed_leaves_in_the_end():
-    events = fed(Feeding(16, 1e-3, 400, seed=1))
-    assert events.size[200:].mean() == pytest.approx(1.0, abs=0.4)
+    events = fed(Feeding(16, 0.1, 300, seed=1))
+    assert events.size[100:].mean() == pytest.approx(1.0, abs=0.4)
     assert events.size.max() > 20 * np.median(events.size)
 
 
-@given(st.floats(0.0, 1.5), st.integers(1, 50))
-def test_a_pile_of_the_height_alone_starts_at_its_start_slope_and_not_before(start, seed):
-    events = stuck(Sticking(12, 0.0, start, 40, seed))
-    moved = np.flatnonzero(events.size)
-    first = moved[0] if moved.size else 40
-    assert (first + 1) * TILT > start * (1 - 1e-9)
-    if first < 40:
-        assert first * TILT <= start * (1 + 1e-9)
+@settings(max_examples=20)
+@given(st.floats(0.05, 0.5))
+def test_a_pile_of_the_height_alone_starts_at_its_start_slope_and_not_before(start):
+    events = stuck(Sticking(8, 0.0, start, 60, seed=1))
+    first = int(np.flatnonzero(events.size)[0])
+    assert first * TILT <= start * (1 + 1e-9)
+    assert (first + 1) * TILT >= start * (1 - 1e-9)
 
 
 def test_a_plain_pile_sheds_what_every_tilt_adds():

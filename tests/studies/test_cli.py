@@ -48,6 +48,7 @@ BOTH = {
     "cells",
     "steps",
     "wall_s",
+    "compile_s",
     "mass_initial",
     "mass_final",
     "outflow",

@@ -151,12 +151,13 @@ def test_what_is_available_is_the_least_that_a_limit_leaves(monkeypatch):
 
 
 @pytest.mark.skipif(not hasattr(psutil, "RLIMIT_AS"), reason="psutil knows limits on Linux only")
-def test_limit_of_the_address_space_counts():
-    script = """
+@pytest.mark.parametrize(("limit", "held"), [("AS", "vms"), ("DATA", "data")])
+def test_limit_of_the_address_space_counts(limit, held):
+    script = f"""
 import psutil, resource
 from bcre_studies.system import memory
-held = psutil.Process().memory_info().vms
-resource.setrlimit(resource.RLIMIT_AS, (held + 10**8, resource.RLIM_INFINITY))
+held = psutil.Process().memory_info().{held}
+resource.setrlimit(resource.RLIMIT_{limit}, (held + 10**8, resource.RLIM_INFINITY))
 print(memory.available())
 """
     printed = subprocess.run([sys.executable, "-c", script], capture_output=True, check=True).stdout

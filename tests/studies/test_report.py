@@ -14,7 +14,6 @@ import pandas as pd
 import pytest
 
 from bcre_studies import catalog, cli
-from bcre_studies.commands import study as study_command
 from bcre_studies.comparison.claim import Claim, quality_check
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON
@@ -29,7 +28,6 @@ def places(tmp_path, monkeypatch):
     """Reports and store in a temporary folder."""
     monkeypatch.setattr(files, "REPORTS", tmp_path / "reports")
     monkeypatch.setattr(write, "REPORTS", tmp_path / "reports")
-    monkeypatch.setattr(write, "VERDICTS", tmp_path / "reports/verdicts.csv")
     monkeypatch.setattr(store, "CACHE", tmp_path / "cache")
     return tmp_path
 
@@ -78,7 +76,7 @@ def fake(places, monkeypatch):
     module = Fake()
     studies = {"fake": catalog.Entry("fake", TITLE)}
     monkeypatch.setitem(sys.modules, "bcre_studies.fake", module)
-    for place in (catalog, finding, store, study_command, write):
+    for place in (catalog, finding, store, write):
         monkeypatch.setattr(place, "STUDIES", studies)
     monkeypatch.setattr(write, "PAPER_CLAIMS", ())
     monkeypatch.setattr(write, "write_pages", pages_of_titles)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import shlex
-from collections.abc import Iterator
+import sys
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from rich.console import Console
@@ -22,7 +23,7 @@ from bcre_studies.models.registry import AUTOMATON, BCRE, CANDIDATES, SCHEMES
 from bcre_studies.running.place import Origin
 from bcre_studies.running.run import require_runnable
 from bcre_studies.system.files import replace_text, require_writable
-from bcre_studies.timing.costs import recorded
+from bcre_studies.timing.costs import Costs, measure, recorded
 
 FOR = "# advised for "
 """So begins the line of an advised scene that names the scene which was asked about."""
@@ -50,9 +51,19 @@ def answer(question: Question, origin: Origin, path: Path) -> str:
         def tell(pilot: str) -> None:
             progress.update(task, description=escape(f"pilot: {pilot}"), advance=1)
 
-        advice = advise(question, Effort(recorded(), tell=tell))
+        advice = advise(question, Effort(_costs(tell), tell=tell))
     write_advised(advice, origin, path)
     return text(advice, origin.name, path)
+
+
+def _costs(tell: Callable[[str], object]) -> Costs:
+    """What runs cost: as recorded, or measured where there is no record."""
+    try:
+        return recorded()
+    except FileNotFoundError as missing:
+        print(f"bcre: {missing}; measured now, half a minute", file=sys.stderr, flush=True)
+        tell("what runs cost")
+        return Costs(measure())
 
 
 def text(advice: Advice, scene: str, path: Path) -> str:

@@ -15,8 +15,11 @@ def check() -> None:
     from bcre_studies.catalog import STUDIES
     from bcre_studies.publishing.finding import find
     from bcre_studies.publishing.write import recorded_verdicts, verdict_table
+    from bcre_studies.system.sources import require_records
 
     recorded = recorded_verdicts()
+    for entry in STUDIES.values():
+        require_records(f"bcre_studies.{entry.module}")
     verdicts = verdict_table([find(name) for name in STUDIES])
     both = verdicts.merge(
         recorded, how="outer", on=["study", "claim"], suffixes=("", "_recorded")
@@ -25,6 +28,6 @@ def check() -> None:
     for row, differing in zip(both.itertuples(), differs, strict=True):
         before = f", recorded as: {row.verdict_recorded}" if differing else ""
         click.echo(f"{row.study}: {row.claim}: {row.verdict}{before}")
-    click.echo(f"{len(both)} claims, {differs.sum()} differ from reports/verdicts.csv")
+    click.echo(f"{len(both)} claims, {differs.sum()} differ from the recorded ones")
     if differs.any():
         sys.exit(1)

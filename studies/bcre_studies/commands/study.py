@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from bcre_studies.catalog import STUDIES
+from bcre_studies import catalog
 from bcre_studies.commands import options
 
 
@@ -19,14 +19,14 @@ from bcre_studies.commands import options
     nargs=-1,
     required=True,
     metavar="NAME...",
-    shell_complete=options.complete_from([*STUDIES]),
+    shell_complete=options.complete_from([*catalog.STUDIES]),
 )
 @options.scheduler
 def run_studies(names: tuple[str, ...], scheduler: str | None) -> None:
     """Run studies (see bcre list), write their reports and print their conclusions."""
     for name in names:
-        if name not in STUDIES:
-            allowed = ", ".join(STUDIES)
+        if name not in catalog.STUDIES:
+            allowed = ", ".join(catalog.STUDIES)
             raise click.UsageError(f"NAME = {name!r}: must be one of {allowed}")
     from bcre_studies.publishing.write import write_studies
     from bcre_studies.sweeps import parallel

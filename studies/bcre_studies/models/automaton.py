@@ -13,6 +13,7 @@ import bcre_ca
 from bcre_studies.models.adapter import Adapter, Stop, refuse_endless, thickest_layer
 from bcre_studies.models.run import Run
 from bcre_studies.scenes.scene import Scene, SceneError
+from bcre_studies.system.compiling import compiling
 
 MOST_STEPS = 10**9
 """A run that would take more is refused: it would not end within a working day."""
@@ -47,14 +48,14 @@ class Automaton(Adapter):
             scene = self.on(scene, cells or scene.domain.cells)
         start = bcre_ca.Pile(*scene.initial(scene.centres()))
         rule, ends, step = rule_of(scene), scene.domain.ends, scene.time.step
-        bcre_ca.advance(start, rule, 0, ends)  # compiles, so that the clock sees the run alone
         piles: list[bcre_ca.Pile] = []
         began = time.perf_counter()
-        for pile in bcre_ca.frames(start, rule, times, ends, step):
-            piles.append(pile)
-            if stop is not None and stop(run_of(scene, piles)):
-                break
-        return run_of(scene, piles, time.perf_counter() - began)
+        with compiling() as compiled_s:
+            for pile in bcre_ca.frames(start, rule, times, ends, step):
+                piles.append(pile)
+                if stop is not None and stop(run_of(scene, piles)):
+                    break
+            return run_of(scene, piles, time.perf_counter() - began - compiled_s())
 
     def answer(
         self, scene: Scene, times: Sequence[float], earlier: Sequence[Run], stop: Stop

@@ -36,7 +36,8 @@ class Run:
     R: zero everywhere in a model without a rolling layer.
     outflow: area that has left through the foot, shape (T,).
     evaluations: how often the model's rule or right-hand side was evaluated on the whole grid.
-    wall_s: seconds it took, compilation excluded.
+    wall_s: seconds it took, compiling excluded.
+    compile_s: seconds that compiling took, or reading what is compiled already; where it is known.
     facts: what only this model can say of its run, as the summary shows it.
     model: the model's name in the registry, which fills it in.
     """
@@ -50,6 +51,7 @@ class Run:
     steps: int
     evaluations: int
     wall_s: float = 0.0
+    compile_s: float = 0.0
     facts: dict[str, Any] = field(default_factory=dict)
     model: str = ""
 

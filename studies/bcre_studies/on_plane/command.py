@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bcre_studies.models.registry import AUTOMATON, BCRE
 from bcre_studies.running.place import (
     SUMMARY,
     Origin,
@@ -33,7 +34,7 @@ FILES = FRAMES, SUMMARY, PICTURE, ANIMATION
 FRAME_BYTES = 40
 """Memory that a frame takes a cell and model: both layers, and copies of them on the way."""
 
-MODELS = ("ca", "pde")
+MODELS = (AUTOMATON.name, BCRE.name)
 
 
 def takes(source: str) -> bool:
@@ -64,7 +65,7 @@ def run(
     """
     from bcre_studies.scenes.plane.scene import load
 
-    names = {None: ("ca",), "both": MODELS}.get(choice, (choice,))
+    names = {None: (AUTOMATON.name,), "both": MODELS}.get(choice, (choice,))
     if not set(names) <= set(MODELS):
         raise ValueError(f"--model = {choice!r}: must be 'ca', 'pde' or 'both' on a plane")
     require_writable("--out", folder, FILES)
@@ -82,12 +83,12 @@ def run(
 def _runs(scene: PlaneScene, names: Sequence[str | None], times: list[float]) -> list[PlaneRun]:
     from bcre_studies.models.plane import automaton
 
-    if "pde" not in names:
+    if BCRE.name not in names:
         return [automaton.run(scene, times)]
     from bcre_studies.models.plane import bcre
 
     bcre.require_taken(scene)
-    return [automaton.run(scene, times)] * ("ca" in names) + [bcre.run(scene, times)]
+    return [automaton.run(scene, times)] * (AUTOMATON.name in names) + [bcre.run(scene, times)]
 
 
 def write(runs: Sequence[PlaneRun], folder: Path, origin: Origin, animate: bool) -> Iterator[str]:

@@ -14,6 +14,7 @@ import numpy as np
 import xarray as xr
 
 from bcre_studies.models.plane.run import PlaneRun
+from bcre_studies.models.registry import AUTOMATON
 
 LAYERS = {"h": "static layer", "R": "rolling layer"}
 ENCODING = {"zlib": True, "complevel": 4, "shuffle": True}
@@ -51,7 +52,7 @@ def dataset(runs: Sequence[PlaneRun]) -> xr.Dataset:
         },
     )
     for run in runs:
-        suffix, whose = ("", "automaton") if run.model == "ca" else ("_pde", "BCRE")
+        suffix, whose = ("", "automaton") if run.model == AUTOMATON.name else ("_pde", "BCRE")
         for name, layer in LAYERS.items():
             values = np.swapaxes(getattr(run, name), 1, 2)
             about = {"long_name": f"{layer}, {whose}", "units": units.length}

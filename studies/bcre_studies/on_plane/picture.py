@@ -13,9 +13,10 @@ from matplotlib.colors import LightSource, LogNorm
 from matplotlib.figure import Figure
 
 from bcre_studies.models.plane.run import PlaneRun
+from bcre_studies.models.registry import AUTOMATON, BCRE
 from bcre_studies.scenes.domain import Array
 
-LABELS = {"ca": "automaton", "pde": "BCRE (PDE)"}
+LABELS = {AUTOMATON.name: "automaton", BCRE.name: "BCRE (PDE)"}
 DECADES = 3
 """Of R that colours tell apart, down from its largest value."""
 

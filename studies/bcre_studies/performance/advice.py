@@ -33,9 +33,9 @@ from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import BCRE, CANDIDATES, SCHEMES
 from bcre_studies.models.run import Run, frame_times
 from bcre_studies.performance.random_scenes import kind_of, random_scene
-from bcre_studies.performance.record.record import read
+from bcre_studies.performance.record.record import recorded as recorded_tables
 from bcre_studies.reporting import style
-from bcre_studies.scenes.listing import built_in_names
+from bcre_studies.scenes.listing import studied_names
 from bcre_studies.scenes.scene import Scene, SceneError, load
 from bcre_studies.sweeps.parallel import each
 from bcre_studies.timing.costs import closures_of, recorded
@@ -138,7 +138,7 @@ def own_scene() -> Scene:
 def run() -> dict[str, pd.DataFrame]:
     """Random scenes, the same extrapolated, and what was really the cheapest."""
     both = each(_random, range(SCENES), "advice, random scenes")
-    named = each(_all_models, [*built_in_names(), OWN], "advice, all models")
+    named = each(_all_models, [*studied_names(), OWN], "advice, all models")
     return {
         "comparison": pd.DataFrame([row for rows, _ in both for row in rows]),
         "extrapolated": pd.DataFrame([row for _, rows in both for row in rows]),
@@ -259,12 +259,11 @@ def _least(scene: Scene, model: str, true: Truth) -> tuple[int, int] | None:
 def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     """Whether what is advised, foretold and cheapest is so."""
     table = tables["comparison"]
-    times = read().get("advice")
     return [
         *(_met(table[table["observable"] == name], name) for name in OBSERVED),
         _foretold(tables["extrapolated"]),
         _cheapest(tables["cheapest"]),
-        *([] if times is None else [_in_time(times)]),
+        _in_time(recorded_tables("advice")["advice"]),
     ]
 
 

@@ -17,7 +17,7 @@ import pandas as pd
 
 from bcre_studies.comparison.claim import Claim, quality_check
 from bcre_studies.comparison.verdict import Verdict
-from bcre_studies.performance.record.record import read
+from bcre_studies.performance.record.record import recorded
 from bcre_studies.reporting import style
 
 if TYPE_CHECKING:
@@ -34,11 +34,8 @@ WHY_RATIO = (
 
 def run() -> dict[str, pd.DataFrame]:
     """The recorded ratios, rates by size, budget and first use."""
-    record = read()
-    return {
-        "comparison": record["ratios"],
-        **{name: record[name] for name in ("sizes", "budget", "first_use", "machine")},
-    }
+    comparison = recorded("ratios")["ratios"]
+    return {"comparison": comparison, **recorded("sizes", "budget", "first_use", "machine")}
 
 
 def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:

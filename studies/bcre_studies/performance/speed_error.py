@@ -32,7 +32,7 @@ from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.comparison.wording import joined, sentences, when
 from bcre_studies.models.registry import SCHEMES
 from bcre_studies.performance.record import contest, work_precision
-from bcre_studies.performance.record.record import TARGETS, cheapest, read
+from bcre_studies.performance.record.record import TARGETS, cheapest, recorded
 from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
@@ -49,14 +49,14 @@ WHY_TIME = (
 
 def run() -> dict[str, pd.DataFrame]:
     """Errors on every grid, and the fewest cell-steps that reach an error."""
+    record = recorded("contest", "reach")
     cases = [(label, index) for label in contest.scenes() for index in range(len(contest.own()))]
     rows = [row for rows in each(_errors_of, cases, "speed_error") for row in rows]
     errors = pd.DataFrame(rows)
-    record = read()
     return {
         "comparison": fewest_cell_steps(errors),
         "errors": errors,
-        **{f"recorded_{name}": record[name] for name in ("contest", "reach") if name in record},
+        **{f"recorded_{name}": table for name, table in record.items()},
     }
 
 

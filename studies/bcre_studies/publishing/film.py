@@ -17,7 +17,7 @@ from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE, Model
 from bcre_studies.models.run import frame_times
 from bcre_studies.reporting.page.packing import pack
 from bcre_studies.scenes.domain import Array
-from bcre_studies.scenes.listing import built_in_names
+from bcre_studies.scenes.listing import studied_names
 from bcre_studies.scenes.scene import load
 from bcre_studies.sweeps.parallel import each
 
@@ -31,7 +31,7 @@ DIGITS = 2
 
 def films() -> list[dict[str, Any]]:
     """One film a built-in scene, in the order of their names; see :func:`film`."""
-    return each(film, built_in_names(), "scenes to watch")
+    return each(film, studied_names(), "scenes to watch")
 
 
 def film(name: str) -> dict[str, Any]:

@@ -4,7 +4,7 @@ The tables of a study are kept under a key of everything that they depend on: th
 it imports, the files that it reads, and the versions of the libraries
 (:mod:`bcre_studies.system.sources`). A file that is damaged or half-written fails its digest and is
 measured again. While a study is being measured a folder of that name keeps its finished cases, and
-a second run waits for the first.
+a second run waits for the first. Where nothing can be written there, nothing is kept.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from bcre_studies.catalog import STUDIES, study
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.sweeps import parallel
 from bcre_studies.system import pickles, sources
-from bcre_studies.system.files import CACHE, alone, require_writable, sweep
+from bcre_studies.system.files import CACHE, alone, can_be_written, sweep
 
 Tables = dict[str, pd.DataFrame]
 
@@ -39,16 +39,20 @@ def tables_of(name: str) -> Tables:
     path = CACHE / f"{entry}.pickle"
     tables = _load(path)
     if tables is None:
-        require_writable(".cache", CACHE)
-        waiting = f"bcre: waiting for another run that measures {name}"
-        with alone(CACHE / f"{name}.lock", waiting):
-            tables = _load(path)
-            if tables is None:
-                with parallel.kept(CACHE / entry):
-                    tables = study(name).run()
-                pickles.dump(path, tables)
-            _forget_old(name)
+        tables = _kept(name, path) if can_be_written(CACHE) else study(name).run()
     return {key: _rounded(table) for key, table in tables.items()}
+
+
+def _kept(name: str, path: Path) -> Tables:
+    """Measure, and keep finished cases and the tables in ``path``, which another run may fill."""
+    with alone(CACHE / f"{name}.lock", f"bcre: waiting for another run that measures {name}"):
+        tables = _load(path)
+        if tables is None:
+            with parallel.kept(path.with_suffix("")):
+                tables = study(name).run()
+            pickles.dump(path, tables)
+        _forget_old(name)
+    return tables
 
 
 def _load(path: Path) -> Tables | None:

@@ -16,8 +16,11 @@ from bcre_studies.publishing.finding import Finding, find
 from bcre_studies.publishing.page import write_pages
 from bcre_studies.reporting.pages import render
 from bcre_studies.system.files import REPORTS, replace_text, require_writable
+from bcre_studies.system.records import record
+from bcre_studies.system.sources import require_records
 
-VERDICTS = REPORTS / "verdicts.csv"
+VERDICTS = ("verdicts.csv", "quality/verdicts.csv")
+"""The verdicts on the model, and those of the quality checks."""
 COLUMNS = ["study", "claim", "verdict"]
 
 RUN_FIRST = ("order_of_accuracy",)
@@ -59,9 +62,9 @@ def decide(findings: Sequence[Finding]) -> list[DecidedClaim]:
 
 def write_index(findings: Sequence[Finding]) -> None:
     """Record the verdicts, write the paper's claims with their evidence, and the pages."""
-    for path, quality in zip(_verdict_files(), (False, True), strict=True):
+    for name, quality in zip(VERDICTS, (False, True), strict=True):
         table = verdict_table(findings, quality)
-        replace_text(path, table.to_csv(index=False, lineterminator="\n"))
+        replace_text(REPORTS / name, table.to_csv(index=False, lineterminator="\n"))
     decided = decide(findings)
     replace_text(REPORTS / "claims.md", render("claims.md.j2", paper_claims=decided))
     write_pages(findings, decided, REPORTS)
@@ -78,7 +81,9 @@ def write_all() -> list[Finding]:
 
 def write_studies(names: Sequence[str]) -> list[Finding]:
     """``bcre study``: these studies, each written as soon as it is measured."""
-    require_writable("reports", REPORTS)
+    for name in names:
+        require_writable("reports", REPORTS / name)
+        require_records(f"bcre_studies.{STUDIES[name].module}")
     findings, written = [], []
     with ThreadPoolExecutor(1) as writer:  # one study is drawn while the next is measured
         for name in names:
@@ -87,11 +92,6 @@ def write_studies(names: Sequence[str]) -> list[Finding]:
         for writing in written:
             writing.result()
     return findings
-
-
-def _verdict_files() -> tuple[Path, Path]:
-    """The verdicts on the model, and those of the quality checks."""
-    return VERDICTS, VERDICTS.parent / "quality" / VERDICTS.name
 
 
 def verdict_table(findings: Sequence[Finding], quality: bool | None = None) -> pd.DataFrame:
@@ -110,7 +110,7 @@ def verdict_table(findings: Sequence[Finding], quality: bool | None = None) -> p
 
 def recorded_verdicts() -> pd.DataFrame:
     """The verdicts that the repository records, quality checks included."""
-    return pd.concat([_recorded(path) for path in _verdict_files()], ignore_index=True)
+    return pd.concat([_recorded(record(name)) for name in VERDICTS], ignore_index=True)
 
 
 def _recorded(path: Path) -> pd.DataFrame:

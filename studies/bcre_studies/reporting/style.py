@@ -30,12 +30,19 @@ RC: Any = {
     "svg.hashsalt": "bcre",
 }
 
+
+def use() -> None:
+    """Draw in this look from here on, whatever a user's own matplotlibrc says."""
+    mpl.rcdefaults()
+    mpl.rcParams.update(RC)
+
+
 START: Look = {"color": "0.55", "linestyle": (0, (4, 2, 1, 2)), "linewidth": 1.0}
 
 
 def panels(rows: int, columns: int) -> tuple[Figure, list[Axes]]:
     """A figure of so many panels, and its axes row by row."""
-    mpl.rcParams.update(RC)
+    use()
     figure = Figure(figsize=(4.1 * columns, 3.2 * rows + 0.4), layout="constrained")
     axes = np.atleast_1d(figure.subplots(rows, columns))
     return figure, list(axes.ravel())

@@ -9,6 +9,7 @@ import sys
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from itertools import repeat
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,7 @@ from bcre_studies.models.run import Run, frame_times
 from bcre_studies.running.place import PROFILES, SUMMARY, Origin
 from bcre_studies.scenes.scene import Scene, SceneError
 from bcre_studies.system import memory
+from bcre_studies.system.compiling import compiling
 from bcre_studies.system.files import replace_file, replace_text
 
 
@@ -35,13 +37,16 @@ def run_scene(scene: Scene, choice: str, frames: int) -> list[Run]:
     SceneError
         where :func:`require_runnable` refuses it, or a model fails on the way.
     """
-    require_runnable(scene, choice, frames)
     runs: list[Run] = []
     times = frame_times(scene, frames)
-    with _failures_name_their_key(scene):
-        for model in chosen(choice):
-            with _progress(scene, model) as show:
-                runs.append(model.answer(scene, times, runs, show))
+    with compiling() as compiled_s:
+        require_runnable(scene, choice, frames)
+        with _failures_name_their_key(scene):
+            for model in chosen(choice):
+                with _progress(scene, model) as show:
+                    run = model.answer(scene, times, runs, show)
+                before = sum(run.compile_s for run in runs)
+                runs.append(replace(run, compile_s=compiled_s() - before))
     return runs
 
 
@@ -158,6 +163,7 @@ def summarise(run: Run) -> dict[str, Any]:
         "cells": run.x.size,
         "steps": run.steps,
         "wall_s": run.wall_s,
+        "compile_s": run.compile_s,
         "mass_initial": float(mass[0]),
         "mass_final": float(mass[-1]),
         "outflow": float(run.outflow[-1]),

@@ -31,6 +31,15 @@ def path_of(name: str) -> Path | None:
     return ON_A_PLANE / f"{name}.toml" if name in plane_names() else None
 
 
+RESCALED = ("figure1_sand",)
+"""Those that are another one in another unit of height, and so have nothing new for a study."""
+
+
+def studied_names() -> list[str]:
+    """Names of the built-in scenes that a study of all scenes runs."""
+    return [name for name in built_in_names() if name not in RESCALED]
+
+
 def built_in_title(name: str) -> str:
     """Title of a built-in scene."""
     path = path_of(name)

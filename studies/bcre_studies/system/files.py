@@ -112,6 +112,15 @@ def alone(lock: Path, waiting: str) -> Iterator[None]:
         yield
 
 
+def can_be_written(folder: Path) -> bool:
+    """Whether files could be written there."""
+    try:
+        require_writable("", folder)
+    except ValueError:
+        return False
+    return True
+
+
 def require_writable(key: str, folder: Path, names: Sequence[str] = ()) -> None:
     """Raise ValueError, naming ``key``, where files of these names could not be written there."""
     present = folder.absolute()

@@ -41,12 +41,15 @@ def available() -> int:
 
 
 def _of_process() -> Iterator[int]:
-    """What ``ulimit -v`` leaves of the address space."""
-    if hasattr(psutil, "RLIMIT_AS"):  # Linux
-        process = psutil.Process()
-        limit, _ = process.rlimit(psutil.RLIMIT_AS)
+    """What ``ulimit -v`` leaves of the address space, and ``ulimit -d`` of the data."""
+    if not hasattr(psutil, "RLIMIT_AS"):  # not Linux
+        return
+    process = psutil.Process()
+    held = process.memory_info()
+    for resource, used in ((psutil.RLIMIT_AS, held.vms), (psutil.RLIMIT_DATA, held.data)):
+        limit, _ = process.rlimit(resource)
         if limit != psutil.RLIM_INFINITY:
-            yield int(limit) - int(process.memory_info().vms)
+            yield int(limit) - int(used)
 
 
 def _of_groups(

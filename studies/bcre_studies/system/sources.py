@@ -18,7 +18,7 @@ from itertools import accumulate
 from pathlib import Path
 from typing import NamedTuple
 
-from bcre_studies.system.files import REPORTS
+from bcre_studies.system.records import recorded, required
 
 LIBRARIES = ("numpy", "scipy", "numba", "py-pde", "pandas")
 DATA = (".toml", ".csv", ".asc", ".j2")
@@ -42,6 +42,19 @@ def digest(module: str) -> str:
 _version = cache(version)
 
 
+def require_records(module: str) -> None:
+    """Refuse what depends on a record that is missing.
+
+    Raises
+    ------
+    FileNotFoundError
+        naming the record.
+    """
+    _, patterns = _modules(module)
+    for pattern in sorted(patterns):
+        required(pattern)
+
+
 def closure(module: str) -> dict[str, Path]:
     """Names and files of ``module`` and of all that it depends on in this project.
 
@@ -50,6 +63,16 @@ def closure(module: str) -> dict[str, Path]:
     folders of those packages; and the reports that one of these modules reads at run time, which
     its constant ``READS`` names as a pattern below ``reports/``.
     """
+    found, patterns = _modules(module)
+    folders = {path.parent for path in found.values()}
+    data = [path for folder in folders for path in _data_in(folder)]
+    data += [path for pattern in patterns for path in recorded(pattern)]
+    found |= {f"{path.parent.name}/{path.name}": path for path in data}
+    return dict(sorted(found.items()))
+
+
+def _modules(module: str) -> tuple[dict[str, Path], set[str]]:
+    """Modules and packages of the closure by name, and the patterns of the records they read."""
     found: dict[str, Path] = {}
     reports: set[str] = set()
     todo = [*_with_parents(module)]
@@ -62,11 +85,7 @@ def closure(module: str) -> dict[str, Path]:
             reports |= needed.reports
             # Importing a.b.c imports a and a.b as well.
             todo += [part for other in needed.imports for part in _with_parents(other)]
-    folders = {path.parent for path in found.values()}
-    files = [path for folder in folders for path in _data_in(folder)]
-    files += [path for pattern in reports for path in REPORTS.glob(pattern)]
-    found |= {f"{path.parent.name}/{path.name}": path for path in files}
-    return dict(sorted(found.items()))
+    return found, reports
 
 
 def _with_parents(name: str) -> Iterator[str]:

@@ -19,7 +19,6 @@ import math
 import statistics
 from dataclasses import dataclass
 from functools import cached_property, partial
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -29,7 +28,7 @@ from bcre_studies.models.registry import AUTOMATON, BCRE, CANDIDATES, SCHEMES
 from bcre_studies.models.run import frame_times
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene
-from bcre_studies.system.files import REPORTS, replace_text
+from bcre_studies.system.records import record
 from bcre_studies.timing.clock import Call, interleaved
 
 CLOSURES = ("none", "kappa", "v_up", "kappa v_up")
@@ -48,7 +47,6 @@ COURANT = 0.1
 """Of the measured runs: well below every bound."""
 
 READS = "speed/costs.csv"
-RECORD = REPORTS / READS
 
 
 @dataclass(frozen=True)
@@ -107,22 +105,15 @@ def closures_of(scene: Scene) -> str:
     return " ".join(present) or "none"
 
 
-def recorded(path: Path = RECORD) -> Costs:
+def recorded() -> Costs:
     """The costs of the committed record.
 
     Raises
     ------
-    OSError
+    FileNotFoundError
         where there is no record.
     """
-    return Costs(pd.read_csv(path))
-
-
-def record(path: Path = RECORD) -> Costs:
-    """Measure, and write the record."""
-    table = measure()
-    replace_text(path, table.to_csv(index=False, lineterminator="\n"))
-    return Costs(table)
+    return Costs(pd.read_csv(record(READS)))
 
 
 def measure() -> pd.DataFrame:

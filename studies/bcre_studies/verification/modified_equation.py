@@ -36,7 +36,7 @@ from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE, Look
 from bcre_studies.models.run import Run
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
-from bcre_studies.scenes.listing import built_in_names
+from bcre_studies.scenes.listing import studied_names
 from bcre_studies.scenes.scene import Scene, load
 from bcre_studies.sweeps.parallel import each
 
@@ -66,7 +66,7 @@ def refined_scene(name: str, cells_factor: int, step_factor: int) -> Scene:
 
 def run() -> dict[str, pd.DataFrame]:
     """One row a scene and refinement."""
-    cases = [(name, *split) for name in built_in_names() for split in SPLITS]
+    cases = [(name, *split) for name in studied_names() for split in SPLITS]
     return {"comparison": pd.DataFrame(each(_compare, cases, "modified_equation"))}
 
 

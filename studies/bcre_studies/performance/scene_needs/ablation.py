@@ -241,8 +241,6 @@ def _of_height_alone(scene: Scene) -> Trial:
 def _cost(scene: Scene, rule: bcre_ca.Rule, single: bool) -> float:
     """What a step of a cell costs in units of the upwind rule without closures, same cells."""
     record = _costs()
-    if record is None:
-        return 1.0
     closures = costs.closures_of(scene) if scene.automaton.scheme != "upwind" else "none"
     cells = scene.domain.cells
     own, plain = (
@@ -255,19 +253,13 @@ def _cost(scene: Scene, rule: bcre_ca.Rule, single: bool) -> float:
 
 
 @lru_cache(maxsize=1)
-def _costs() -> costs.Costs | None:
-    try:
-        return costs.recorded()
-    except OSError:
-        return None
+def _costs() -> costs.Costs:
+    return costs.recorded()
 
 
 @lru_cache
 def _ratio(term: str) -> float:
     """The recorded gain of leaving a term out, on the fewer cells."""
-    try:
-        table = specialisation.recorded()
-    except OSError:
-        return 1.0
+    table = specialisation.recorded()
     rows = table[table["term"] == term]
     return float(rows.loc[rows["cells"].idxmin(), "ratio"]) if len(rows) else 1.0

@@ -57,7 +57,7 @@ from bcre_studies.performance.scene_needs.smallest import (
     without,
 )
 from bcre_studies.reporting import style
-from bcre_studies.scenes.listing import built_in_names
+from bcre_studies.scenes.listing import studied_names
 from bcre_studies.scenes.scene import load
 from bcre_studies.sweeps.parallel import each
 
@@ -79,7 +79,7 @@ Row = dict[str, Any]
 
 def run() -> dict[str, pd.DataFrame]:
     """The comparison, and a table per scene."""
-    names = built_in_names()
+    names = studied_names()
     found = each(needs_of, names, "scene_needs")
     comparison = [row for rows, _ in found for row in rows]
     tables = {name: pd.DataFrame(rows) for name, (_, rows) in zip(names, found, strict=True)}
@@ -271,10 +271,7 @@ def _specialised_claim() -> Claim:
     statement = "Leaving an absent D, kappa, v_up or cut-off out of the compiled code saves time."
     tolerance = "a ratio above 1 for each term and number of cells of the recorded measurement"
     name = "specialised kernels"
-    try:
-        table = specialisation.recorded()
-    except OSError:
-        return quality_check(name, statement, Verdict.UNRESOLVED, "there is no record", tolerance)
+    table = specialisation.recorded()
     ratios = "; ".join(
         f"{term} " + ", ".join(f"{row.ratio:g} ({row.cells:g} cells)" for row in rows.itertuples())
         for term, rows in table.groupby("term", sort=False)

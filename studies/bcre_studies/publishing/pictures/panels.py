@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -12,7 +11,7 @@ from bcre_studies.reporting import style
 
 def panels(rows: int, columns: int, *, width: float, height: float) -> tuple[Figure, list[Axes]]:
     """A figure of so many panels, each ``width`` by ``height`` inches, and its axes row by row."""
-    mpl.rcParams.update(style.RC)
+    style.use()
     figure = Figure(figsize=(width * columns, height * rows), layout="constrained")
     axes = np.atleast_1d(figure.subplots(rows, columns))
     return figure, list(axes.ravel())

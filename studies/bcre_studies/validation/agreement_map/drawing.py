@@ -147,6 +147,9 @@ def _distances(axis: Axes, thresholds: pd.DataFrame) -> None:
     own = thresholds[(thresholds["model"] == AUTOMATON.name) & (thresholds["peclet"] == 1.0)]
     thick = own[own["thickness"] > own["thickness"].min()]
     for shade, (thickness, rows) in zip(SHADES[1:], thick.groupby("thickness"), strict=True):
+        names = {LENGTH: f"a = {thickness:g}"}
+        if shade == SHADES[-1]:
+            names[2 * LENGTH] = f"L = {2 * LENGTH:g} D/v instead of {LENGTH:g}"
         for length, marker in ((LENGTH, AUTOMATON.marker), (2 * LENGTH, "D")):
             these = rows[rows["length"] == length].sort_values("to_foot")
             axis.plot(
@@ -157,10 +160,9 @@ def _distances(axis: Axes, thresholds: pd.DataFrame) -> None:
                 markerfacecolor=shade if length == LENGTH else "none",
                 markersize=4.5 if length == LENGTH else 9,
                 linestyle="-" if length == LENGTH else "",
-                label=f"a = {thickness:g}, L = {length:g} D/v",
+                label=names.get(length, "_nolegend_"),
             )
     axis.set_xlabel("distance to the foot, D/v")
     axis.set_ylabel(r"$(S - S_c)/(S_d - S_c)$ of BCRE")
-    axis.set_ylim(top=0.95)
     axis.set_title("The same at Pe = 1, by place and length", loc="left")
-    axis.legend(fontsize=7.5, ncols=2, loc="upper center")
+    axis.legend(fontsize=7.5)

@@ -271,10 +271,9 @@ def _not_negative(table: pd.DataFrame) -> Claim:
 
 def draw(tables: dict[str, pd.DataFrame]) -> Figure:
     """What came of every scene and model; the scarp on finer and finer grids."""
-    import matplotlib as mpl
     from matplotlib.figure import Figure
 
-    mpl.rcParams.update(style.RC)
+    style.use()
     figure = Figure(figsize=(11.0, 7.4), layout="constrained")
     axes = figure.subplot_mosaic([["runs", "max_R"], ["runs", "place"]], width_ratios=[1.25, 1])
     _draw_runs(axes["runs"], tables["comparison"])
