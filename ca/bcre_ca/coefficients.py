@@ -86,6 +86,7 @@ class Coefficients(NamedTuple):
     wave_correction: exchange/2 in a calibrated rule, which takes the rule's own curvature
         (gamma d/2)(1 - exchange X) back: the surface wave becomes that of Lax and Wendroff.
     dry: thickness below which a layer comes to rest, a length.
+    emptying: steps in which a cell would empty, 1/(courant + 2 diffusion); absent without ``dry``.
     """
 
     courant: float
@@ -97,6 +98,7 @@ class Coefficients(NamedTuple):
     curvature: float | None
     wave_correction: float | None
     dry: float | None
+    emptying: float | None
     scheme: CompiledScheme
 
 
@@ -119,6 +121,7 @@ def coefficients_in(row: Any, like: Coefficients) -> Coefficients:
         _unless_absent(like.curvature, row[6]),
         _unless_absent(like.wave_correction, row[7]),
         _unless_absent(like.dry, row[8]),
+        _unless_absent(like.emptying, row[9]),
         like.scheme,
     )
 
@@ -145,18 +148,28 @@ def fold(p: Parameters, dt: float) -> Coefficients:
     courant = p.v * dt / p.d
     exchange = p.gamma * dt / p.d
     diffusion = _diffusion_left(over(times(p.D, dt), p.d * p.d), courant, p.scheme)
+    outgoing = plus(courant, diffusion)
     return Coefficients(
         courant,
         diffusion,
-        plus(courant, diffusion),
+        outgoing,
         exchange,
         p.repose_slope * p.d,
         over(p.gamma, p.v_up),
         times(p.kappa, dt / (p.d * p.d)),
         _wave_correction(exchange, p.scheme),
         p.dry,
+        emptying_steps(plus(outgoing, diffusion), p.dry),
         p.scheme,
     )
+
+
+@register_jitable
+def emptying_steps(leaving: Any, dry: Any) -> Any:
+    """Steps in which a cell empties that loses the part ``leaving`` in each; 1 where none does."""
+    if dry is None:
+        return None
+    return 1.0 / leaving if leaving > 0 else 1.0
 
 
 def _diffusion_of_calibrated(diffusion: Any, courant: float, scheme: Calibrated) -> Any:

@@ -58,12 +58,26 @@ def carried(R: Any, R_next: Any, K: Coefficients) -> Any:
 
 
 @register_jitable
-def deposit_thin(h: Any, R: Any, dry: float | None) -> tuple[Any, Any]:
-    """h and R after a layer thinner than ``dry`` has come to rest; mass stays.
+def deposit_thin(
+    h: Any, R: Any, R_before: Any, dry: float | None, emptying: float | None
+) -> tuple[Any, Any]:
+    """h and R after a thin layer has come to rest; mass stays.
 
-    The comparison is a factor, not a branch, so that arrays and cells are treated alike.
+    A layer comes to rest where it is thinner than ``dry``, and still would be if it went on
+    changing as in this step for the time in which a cell empties. That time, 1/(v/d + 2 D/d^2), is
+    no shorter than a stable step and does not depend on it: a cell that fills from a thick layer
+    gains less than any ``dry`` in a short step, and must not be emptied after each of them.
+
+    Parameters
+    ----------
+    h, R: the layers after a step, lengths.
+    R_before: the rolling layer before it.
+    dry: thickness, a length; None where no layer comes to rest.
+    emptying: steps in which a cell empties.
     """
     if dry is None:
         return h, R
-    thin = R * (dry > R)
+    coming = R_before + emptying * (R - R_before)
+    # A factor, not a branch, so that arrays and cells are treated alike.
+    thin = R * ((dry > R) & (dry > coming))
     return h + thin, R - thin

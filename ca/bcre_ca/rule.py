@@ -95,7 +95,8 @@ class Rule:
         (:mod:`bcre_ca.line.second_order`).
     kappa: curvature term of the exchange, length/time, >= 0.
     v_up: largest speed of the climbing wave, length/time, > 0; infinite for the linear exchange.
-    dry: a layer thinner than this after a step comes to rest: R is moved into h. A length, >= 0.
+    dry: a layer thinner than this comes to rest, R is moved into h, unless what flows in is about
+        to make it thicker (:func:`bcre_ca.exchange.deposit_thin`). A length, >= 0.
 
     Raises
     ------

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -116,42 +115,6 @@ def test_figure_1_runs_to_its_end_with_the_step_that_follows_the_bounds(figure_1
     mass = figure_1.mass(1.0)
     assert all(abs(pile.mass(1.0) + pile.outflow - mass) <= 1e-12 * mass for pile in piles)
     assert -np.diff(piles[-1].h)[:-1] == pytest.approx(np.full(98, 0.5), abs=2e-3)
-
-
-@pytest.mark.parametrize("step", ["auto", 0.9, 0.37])
-def test_frames_hit_their_times_exactly(figure_1, step):
-    times = [0.0, 0.1, 1.0, math.pi, 10.0, 12.3456789, 100.0]
-    piles = list(frames(figure_1, FIGURE_1, times, step=step))
-    assert [pile.t for pile in piles] == times
-    assert piles[0].R.tobytes() == figure_1.R.tobytes()
-    assert all(earlier.steps < later.steps for earlier, later in pairwise(piles))
-    with pytest.raises(ValueError, match=r"times = \[2.0, 1.0\]: must ascend"):
-        list(frames(figure_1, FIGURE_1, [2.0, 1.0], step=step))
-
-
-def test_frames_at_whole_steps_are_the_states_of_evolve_to_the_bit(figure_1):
-    rule = replace(FIGURE_1, dt=0.5)
-    for pile in frames(figure_1, rule, [5.0, 20.0, 60.0], step=0.5):
-        h, R = evolve(figure_1.h, figure_1.R, rule, pile.steps)
-        assert pile.steps == round(pile.t / 0.5)
-        assert pile.h.tobytes() == h.tobytes()
-        assert pile.R.tobytes() == R.tobytes()
-
-
-def test_fixed_step_is_shortened_as_little_as_makes_the_times_fall_on_steps(figure_1):
-    (pile,) = frames(figure_1, FIGURE_1, [10.0], step=0.3)
-    assert pile.steps == 34
-
-
-def test_frames_do_not_change_a_fixed_step():
-    start = pulse(0.48, 50)
-    (whole,) = frames(start, FIGURE_2, [8.0], step=0.2)
-    *_, often = frames(start, FIGURE_2, [2.0, 4.0, 6.0, 8.0], step=0.2)
-    assert whole.steps == often.steps == 40
-    assert np.abs(whole.R - often.R).max() == 0
-    *_, between = frames(start, FIGURE_2, [0.7, 8.0], step=0.2)
-    assert between.steps == 41
-    assert between.R.sum() == pytest.approx(whole.R.sum(), rel=1e-3)
 
 
 def test_single_small_avalanche_strips_an_even_layer_and_leaves_the_slope():

@@ -2,7 +2,7 @@
 
 from bcre_ca.kept import kept
 from bcre_ca.line import kernels as line
-from bcre_ca.line.kernels import driver
+from bcre_ca.line.kernels import bounds
 from bcre_ca.plane import kernels as plane
 from bcre_ca.sources import FOLDER, digest_of
 
@@ -14,12 +14,12 @@ def file_of(compiled):
 
 
 def test_machine_code_of_other_sources_lies_in_other_files():
-    files = [file_of(kept(driver.bounds, sources)) for sources in ("one", "one", "other")]
+    files = [file_of(kept(bounds.stable_steps, sources)) for sources in ("one", "one", "other")]
     assert files[0] == files[1] != files[2]
 
 
 def test_functions_in_use_are_kept_by_the_digest_of_the_sources():
-    for used in (line._march, line._march_frozen, line._follow, line._bounds):
+    for used in (line._march, line._march_frozen, line._follow, line._stable_steps):
         assert file_of(used) == file_of(kept(used.py_func, digest_of(FOLDER)))
     for used in (plane.take_steps, plane.extremes):
         assert file_of(used) == file_of(kept(used.py_func, digest_of(FOLDER)))

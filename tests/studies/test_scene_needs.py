@@ -38,14 +38,6 @@ def test_full_model_is_the_automaton_as_the_scene_stands(name):
     assert trial.cost == trial.cell_steps
 
 
-def test_frames_of_a_fixed_step_lie_on_whole_steps():
-    scene = load("figure3")
-    times = ablation.recorded_times(scene)
-    whole = np.array(times) / scene.time.step
-    assert np.allclose(whole, np.round(whole), atol=1e-9)
-    assert (times[0], times[-1]) == (0.0, scene.time.until)
-
-
 def test_without_D_v_or_gamma_the_coefficient_is_zero():
     scene = load("figure2")
     for name in ("D", "v", "gamma"):

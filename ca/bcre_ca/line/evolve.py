@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Literal
@@ -11,9 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bcre_ca.line import kernels
-from bcre_ca.line.kernels import AT_ONCE, BLOCK
 from bcre_ca.line.pile import Pile, layers_of, require_ends, whole
-from bcre_ca.rule import Ends, Rule, UnstableStep
+from bcre_ca.line.recording import Recording
+from bcre_ca.line.refusal import raise_outgrown, require_stable
+from bcre_ca.rule import Ends, Rule
 
 Array = NDArray[np.float64]
 
@@ -45,25 +45,20 @@ def evolve(
     UnstableStep
         where dt cannot be stable for this start.
     FloatingPointError
-        where the layers have outgrown dt by the end.
+        where the layers have outgrown dt by the end, or after any :data:`BLOCK` steps.
     ValueError
         for layers of unequal or wrong shape, empty or not finite.
-
-    >>> import numpy as np
-    >>> rule = Rule(v=0.1, D=0.1, gamma=0.01, Sc=0.5, d=1.0, dt=0.4)
-    >>> h, R = evolve(0.5 * np.arange(20.0)[::-1], np.eye(20)[3], rule, steps=10)
-    >>> float(round((h + R).sum() - 95, 12))
-    1.0
     """
     static, rolling = layers_of(h, R, rank=1)
     steps = whole(steps)
     require_ends(ends)
     if frozen is not None:
-        return _evolve_frozen(static, rolling, rule, steps, ends, np.asarray(frozen, static.dtype))
-    _require_stable(static, rolling, rule, ends)
-    start = Pile(static.copy(), rolling.copy())
-    _march(static, rolling, rule, steps, ends)
-    _require_outlasted(start, static, rolling, rule, steps, ends)
+        surface = np.asarray(frozen, static.dtype)
+        return _evolve_frozen(static, rolling, rule, steps, ends, surface)
+    require_stable(static, rolling, rule, ends)
+    start = static.copy(), rolling.copy()
+    if not kernels.march_watched(static[None], rolling[None], [rule], steps, ends).all():
+        raise_outgrown(*start, rule, steps, ends)
     return static, rolling
 
 
@@ -80,22 +75,15 @@ def evolve_many(
         raise ValueError(f"rule: there are {len(rules)} for {len(static)} piles; must be as many")
     steps = whole(steps)
     require_ends(ends)
-    for i in _unstable(static, rolling, rules, ends):
-        _require_stable(static[i], rolling[i], rules[i], ends)
-    starts = static.copy(), rolling.copy()
-    for part in _parts(steps, static.shape[1]):
-        kernels.march_many(static, rolling, rules, part, ends)
-    for i in _unstable(static, rolling, rules, ends):
-        start = Pile(starts[0][i], starts[1][i])
-        _require_outlasted(start, static[i], rolling[i], rules[i], steps, ends)
+    is_stable = [one.dt for one in rules] <= kernels.stable_steps(static, rolling, rules, ends)
+    for i in np.flatnonzero(~is_stable):  # or not finite, or stable but for rounding
+        require_stable(static[i], rolling[i], rules[i], ends)
+    start = static.copy(), rolling.copy()
+    has_outlasted = kernels.march_watched(static, rolling, rules, steps, ends)
+    if not has_outlasted.all():
+        first = int(np.argmin(has_outlasted))
+        raise_outgrown(start[0][first], start[1][first], rules[first], steps, ends)
     return static, rolling
-
-
-def _unstable(h: Array, R: Array, rules: Sequence[Rule], ends: Ends) -> Iterator[int]:
-    """The piles whose dt may not be stable, or are not finite."""
-    steps = np.array([rule.dt for rule in rules])
-    stable = steps <= kernels.stable_steps(h, R, rules, ends)
-    return (int(i) for i in np.flatnonzero(~stable))
 
 
 def march(h: Array, R: Array, rule: Rule, steps: int, ends: Ends = "open") -> float:
@@ -105,7 +93,9 @@ def march(h: Array, R: Array, rule: Rule, steps: int, ends: Ends = "open") -> fl
     """
     if h.ndim != 1:
         raise ValueError(f"h has shape {h.shape}: must be (N,)")
-    return _march(h, R, rule, steps, ends)
+    account = np.zeros(2)
+    kernels.march(h, R, rule, steps, ends, account)
+    return float(account[0])
 
 
 def advance(pile: Pile, rule: Rule, steps: int, ends: Ends = "open") -> Pile:
@@ -119,9 +109,9 @@ def advance(pile: Pile, rule: Rule, steps: int, ends: Ends = "open") -> Pile:
     steps = whole(steps)
     require_ends(ends)
     h, R = pile.h.copy(), pile.R.copy()
-    outflow = _march(h, R, rule, steps, ends) * rule.d
+    outflow = march(h, R, rule, steps, ends) * rule.d
     if not (np.isfinite(h).all() and np.isfinite(R).all()):
-        _locate_instability(pile, rule, steps, ends)
+        raise_outgrown(pile.h, pile.R, rule, steps, ends, pile.t)
     return replace(
         pile,
         h=h,
@@ -142,10 +132,13 @@ def frames(
 ) -> Iterator[Pile]:
     """The pile at each of the ascending ``times``.
 
-    A fixed step is taken as it is, except for a shorter one before a time between two steps.
+    The steps do not depend on the times: between two steps the layers are interpolated linearly,
+    which keeps mass and R >= 0. The last step may end after the last time.
+
     ``"auto"`` takes the share ``margin`` of the largest stable step, found anew after every
     :data:`BLOCK` steps. A block at whose end the bound has been passed is repeated in shorter
-    steps.
+    steps, and a block is always taken whole. A fixed step is looked at as often, and once it has
+    passed the last time.
 
     Raises
     ------
@@ -154,40 +147,22 @@ def frames(
     FloatingPointError
         for a fixed step that the avalanche outgrew, naming cell, time and bound.
     """
+    wanted = [float(time) for time in times]
+    for before, time in zip([pile.t, *wanted], wanted, strict=False):
+        if not before <= time < np.inf:
+            raise ValueError(f"times = {wanted!r}: must ascend from t = {pile.t!r}")
+    fixed = 0.0
     if step != "auto":
         rule = replace(rule, dt=step)
-        _require_stable(pile.h, pile.R, rule, ends)
-    for time in times:
-        if time < pile.t:
-            raise ValueError(f"times = {list(times)!r}: must ascend from t = {pile.t!r}")
-        if step == "auto":
-            pile = _follow(pile, rule, time, ends, margin)
-        else:
-            pile = _reach(pile, rule, time, ends)
-        yield pile
+        require_stable(pile.h, pile.R, rule, ends)
+        fixed = float(rule.dt)
+    run = Recording(pile, rule, ends, fixed, margin, wanted[-1] if wanted else pile.t)
+    return (run.at(time) for time in wanted)
 
 
 def largest_stable_step(pile: Pile, rule: Rule, ends: Ends) -> float:
     """:meth:`Rule.max_stable_step` for this pile; NaN where it is not finite."""
     return kernels.stable_step(pile.h, pile.R, rule, ends)
-
-
-def _require_stable(h: Array, R: Array, rule: Rule, ends: Ends) -> None:
-    rule.require_within(kernels.stable_step(h, R, rule, ends), float(R.max()))
-
-
-def _parts(steps: int, cells: int) -> Iterator[int]:
-    """The steps in parts short enough to be interrupted between."""
-    part = max(AT_ONCE // cells, BLOCK)
-    return (min(part, steps - done) for done in range(0, steps, part))
-
-
-def _march(
-    h: Array, R: Array, rule: Rule, steps: int, ends: Ends, frozen: Array | None = None
-) -> float:
-    return math.fsum(
-        kernels.march(h, R, rule, part, ends, frozen) for part in _parts(steps, h.size)
-    )
 
 
 def _evolve_frozen(
@@ -197,83 +172,8 @@ def _evolve_frozen(
     rule.require_upwind("a frozen slope")
     if surface.shape != h.shape:
         raise ValueError(f"frozen has shape {surface.shape}: must be that of h, {h.shape}")
-    _require_stable(surface, np.zeros_like(R), rule, ends)
-    _march(h, R, rule, steps, ends, surface)
+    require_stable(surface, np.zeros_like(R), rule, ends)
+    kernels.march_frozen(h, R, rule, steps, ends, surface)
     if not (np.isfinite(h).all() and np.isfinite(R).all()):
         raise FloatingPointError("the layers outgrew all numbers on the frozen slope")
     return h, R
-
-
-def _reach(pile: Pile, rule: Rule, time: float, ends: Ends) -> Pile:
-    """Whole steps of dt, then what is left of the way in one shorter step."""
-    span = time - pile.t
-    steps = math.floor(span / rule.dt * (1 + 1e-9))
-    end = _advance_stably(pile, rule, steps, ends)
-    left = span - steps * rule.dt
-    if left > 1e-9 * rule.dt:
-        end = _advance_stably(end, replace(rule, dt=left), 1, ends)
-    return replace(end, t=time)
-
-
-def _advance_stably(pile: Pile, rule: Rule, steps: int, ends: Ends) -> Pile:
-    end = advance(pile, rule, steps, ends)
-    _require_outlasted(pile, end.h, end.R, rule, steps, ends)
-    return end
-
-
-def _require_outlasted(start: Pile, h: Array, R: Array, rule: Rule, steps: int, ends: Ends) -> None:
-    """Raise where dt is no longer stable at the end of the steps."""
-    try:
-        _require_stable(h, R, rule, ends)
-    except UnstableStep:
-        _locate_instability(start, rule, steps, ends)
-        raise
-
-
-def _locate_instability(
-    pile: Pile, rule: Rule, steps: int, ends: Ends, together: int = BLOCK
-) -> None:
-    """Take the steps again, ``together`` at a time, and raise where dt ceased to be stable.
-
-    An instability that begins and ends within ``together`` steps is not seen.
-    """
-    for done in range(0, steps, together):
-        h, R = pile.h.copy(), pile.R.copy()
-        part = min(together, steps - done)
-        kernels.march(h, R, rule, part, ends)
-        try:
-            _require_stable(h, R, rule, ends)
-        except UnstableStep as outgrown:
-            if part > 1:
-                _locate_instability(pile, rule, part, ends, together=1)
-            finite = np.isfinite(h) & np.isfinite(R)
-            cell = int(np.argmax(R)) if finite.all() else int(np.argmin(finite))
-            raise FloatingPointError(
-                f"the avalanche outgrew the step at t = {pile.t + part * rule.dt:.6g}, in cell "
-                f"{cell}: {outgrown}"
-            ) from None
-        pile = replace(pile, h=h, R=R, t=pile.t + part * rule.dt)
-
-
-def _follow(pile: Pile, rule: Rule, time: float, ends: Ends, margin: float) -> Pile:
-    h, R = pile.h.copy(), pile.R.copy()
-    span, blocks = time - pile.t, max(AT_ONCE // (h.size * BLOCK), 1)
-    if span <= 1e-12 * abs(time):
-        return replace(pile, t=time)
-    while span > 0:
-        done = kernels.follow(h, R, rule, span, blocks, margin, ends)
-        if done.left < 0:
-            raise FloatingPointError(
-                f"no step is short enough at t = {time + done.left:.6g}: the layers outgrow "
-                "every bound"
-            )
-        span = done.left
-        pile = replace(
-            pile,
-            outflow=pile.outflow + done.outflow * rule.d,
-            steps=pile.steps + done.steps,
-            lowered=pile.lowered + done.lowered,
-            raised=pile.raised + done.raised,
-            redone=pile.redone + done.redone,
-        )
-    return replace(pile, h=h, R=R, t=time)

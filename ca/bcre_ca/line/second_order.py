@@ -94,7 +94,7 @@ def corrected(
 ) -> Any:
     """The new layers, from fluxes and slopes at mid-time."""
     change = eroded(R_mid, drop, bend, K)
-    return deposit_thin(h - change, R + ((flux_in - flux_out) + change), K.dry)
+    return deposit_thin(h - change, R + ((flux_in - flux_out) + change), R, K.dry, K.emptying)
 
 
 @register_jitable

@@ -75,13 +75,13 @@ def _synchronous(
         flux_in[0], flux_out[-1] = 0.0, K.courant * R[-1]
         exchange[-1] = eroded_at_foot(R[-1], above[-1], K)
         outflow = float(flux_out[-1])
-    h, R = deposit_thin(h - exchange, R + ((flux_in - flux_out) + exchange), K.dry)
+    h, R = deposit_thin(h - exchange, R + ((flux_in - flux_out) + exchange), R, K.dry, K.emptying)
     return h, R, outflow
 
 
 def _in_place(h: Array, R: Array, rule: Rule, ends: Ends) -> tuple[Array, Array, float]:
     K, last = rule.coefficients(), h.size - 1
-    h, R, outflow = h.copy(), R.copy(), 0.0
+    R_before, h, R, outflow = R, h.copy(), R.copy(), 0.0
     for i in range(last + 1) if rule.order == "right" else range(last, -1, -1):
         if i == last and ends == "open":
             flux, exchange = K.courant * R[i], 0.0
@@ -93,5 +93,5 @@ def _in_place(h: Array, R: Array, rule: Rule, ends: Ends) -> tuple[Array, Array,
             R[(i + 1) % h.size] += flux
         R[i] += exchange - flux
         h[i] -= exchange
-    h, R = deposit_thin(h, R, K.dry)
+    h, R = deposit_thin(h, R, R_before, K.dry, K.emptying)
     return h, R, outflow

@@ -12,6 +12,7 @@ import numpy as np
 from numba.extending import overload
 from numpy.typing import DTypeLike
 
+from bcre_ca.coefficients import emptying_steps
 from bcre_ca.rule import Rule
 
 
@@ -69,6 +70,7 @@ class Coefficients(NamedTuple):
     half: 1/2, in the number type of the others.
     saturation: gamma/v_up, 1/length.
     dry: thickness below which a layer comes to rest, a length.
+    emptying: steps in which a cell would empty; absent without ``dry``.
     """
 
     courant: float
@@ -82,6 +84,7 @@ class Coefficients(NamedTuple):
     half: float
     saturation: float | None
     dry: float | None
+    emptying: float | None
     flow: Flow
 
 
@@ -93,11 +96,12 @@ def fold(rule: Rule, D_across: float, flow: str, dtype: DTypeLike, dt: float) ->
     arithmetic."""
     kind = np.dtype(dtype)
     area = rule.d * rule.d
-    courant, diffusion = rule.v * dt / rule.d, rule.D * dt / area
+    courant, diffusion, across = rule.v * dt / rule.d, rule.D * dt / area, D_across * dt / area
+    dry = rule.dry if rule.dry > 0 else None
     constants = (
         courant,
         diffusion,
-        D_across * dt / area,
+        across,
         courant + diffusion,
         rule.gamma * dt / rule.d,
         rule.exchange_slope() * rule.d,
@@ -105,7 +109,8 @@ def fold(rule: Rule, D_across: float, flow: str, dtype: DTypeLike, dt: float) ->
         LEAST_DROP[kind.name],
         0.5,
         rule.gamma / rule.v_up if np.isfinite(rule.v_up) else None,
-        rule.dry if rule.dry > 0 else None,
+        dry,
+        emptying_steps(courant + 2 * (diffusion + across), dry),
     )
     typed: Any = kind.type
     of_type = (None if value is None else typed(value) for value in constants)

@@ -87,5 +87,7 @@ def changed(
     h: Any, R: Any, along: Any, across: Any, erosion: Any, K: Coefficients
 ) -> tuple[Any, Any]:
     """The new h and R of a cell from the net flux into it along and across, and its erosion."""
-    layers: tuple[Any, Any] = deposit_thin(h - erosion, R + ((along + across) + erosion), K.dry)
+    layers: tuple[Any, Any] = deposit_thin(
+        h - erosion, R + ((along + across) + erosion), R, K.dry, K.emptying
+    )
     return layers

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from bcre_ca import Rule
-from bcre_ca.plane import Plane, Run, Sand, Source, frames
+from bcre_ca.plane import Plane, Run, Sand, Source, advance, frames
 from bcre_ca.plane.theory import rill_growth, silo_layer
 
 
@@ -163,3 +163,19 @@ def test_free_surface_has_no_preferred_axis(flow, rng, rule):
     for turn in (np.rot90, np.fliplr, np.transpose):
         for found, expected in zip(end(turn), end(np.asarray), strict=True):
             assert found == pytest.approx(turn(expected), abs=1e-12)
+
+
+def test_cut_off_has_a_limit_as_the_step_falls_and_differs_by_a_few_of_it(thick_rule):
+    """A pulse below repose: a cell that gains less than that in a step fills all the same."""
+    i = np.arange(60)[:, None] + 0.5
+    h, R = -0.58 * i * np.ones(12), np.exp(-(((i - 20) / 4) ** 2)) * np.ones(12)
+    missing = {}
+    for dt in (0.2, 0.02, 0.005):
+        rule = replace(thick_rule, v=2.5, gamma=0.01, d=1.0, dt=dt, v_up=1e9)
+        planes = (Plane(replace(rule, dry=dry), base=h - 1) for dry in (1e-300, 1e-3))
+        exact, cut = (advance(Sand(h, R), plane, round(8 / dt)) for plane in planes)
+        assert np.abs(exact.R - cut.R).max() <= 4e-3
+        assert np.abs(exact.h - cut.h).max() <= 2e-3
+        missing[dt] = (exact.R - cut.R).sum() / 12
+    assert 0 < missing[0.005] <= 60e-3
+    assert all(abs(missing[dt] - missing[0.005]) <= 60e-3 * dt for dt in missing)

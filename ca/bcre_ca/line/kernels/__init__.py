@@ -1,17 +1,17 @@
 """The compiled automaton: many steps a call, equal to :mod:`bcre_ca.line.step` to the bit.
 
 The kernels are ``sweep`` for the upwind and the calibrated scheme, ``second_order`` for the limited
-one, ``in_place`` for the in-place readings and ``frozen`` for a frozen slope; ``driver`` decides
-where and for how long they run. Their expressions are those of the plain step, in the same order,
-without fused or reassociated arithmetic.
+one, ``in_place`` for the in-place readings and ``frozen`` for a frozen slope. ``driver`` decides
+where they run, ``bounds`` how long a step may be, and ``following`` leads them to a wanted time.
+Their expressions are those of the plain step, in the same order, without fused or reassociated
+arithmetic.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any, NamedTuple
+from typing import Any
 
 import numba
 import numpy as np
@@ -20,11 +20,15 @@ from numpy.typing import NDArray
 from bcre_ca.coefficients import Coefficients, Parameters, every_term, row_of
 from bcre_ca.kept import kept
 from bcre_ca.line.drops import drops, period_drop
-from bcre_ca.line.kernels import driver
+from bcre_ca.line.kernels import bounds, driver, following
+from bcre_ca.line.kernels.following import Course, State
 from bcre_ca.rule import Ends, Rule
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 Piles = NDArray[np.int64]
+
+BLOCK = driver.BLOCK
 
 AT_ONCE = 200_000_000
 """Cell-steps of one compiled call, which Ctrl-C cannot interrupt."""
@@ -32,61 +36,77 @@ AT_ONCE = 200_000_000
 ONE = np.zeros(1, np.int64)
 """The only pile."""
 
-BLOCK = driver.BLOCK
-
-
 _march = kept(driver.march)
 _march_frozen = kept(driver.march_frozen)
-_follow = kept(driver.follow)
-_bounds = kept(driver.bounds)
+_follow = kept(following.follow)
+_stable_steps = kept(bounds.stable_steps)
 
 
-class Followed(NamedTuple):
-    """What a march under the bounds did; ``left`` of the span is negative where it gave up."""
+def march(h: Array, R: Array, rule: Rule, steps: int, ends: Ends, account: Array) -> None:
+    """Take ``steps`` steps in place, stable or not.
 
-    left: float
-    outflow: float
-    steps: int
-    lowered: int
-    raised: int
-    redone: int
-
-
-def march(
-    h: Array, R: Array, rule: Rule, steps: int, ends: Ends, frozen: Array | None = None
-) -> float:
-    """Take ``steps`` steps in place; return what left through the foot (times d: an area).
-
-    h and R have the shape (N,). The exchange sees the slope of ``frozen`` where that is given.
+    h and R have the shape (N,). ``account``, shape (2,), takes what left through the foot (times d:
+    an area), and its rounding error.
     """
-    if frozen is None:
-        return _march_piles(h[None], R[None], [rule], ONE, steps, ends)
-    K, account, fall = _as_type(rule.coefficients(), h.dtype), np.zeros(2), _fall(rule, h, ends)
-    _, below = drops(frozen, K.repose_drop, fall)
-    _march_frozen(h, R, below, K, steps, account, fall)
-    return float(account[0])
+    for part in _parts(steps, h.size):
+        _march_piles(h[None], R[None], [rule], ONE, part, ends, account[None], is_watched=False)
 
 
-def march_many(h: Array, R: Array, rules: Sequence[Rule], steps: int, ends: Ends) -> float:
-    """:func:`march` for many piles, shape (piles, N), a rule each, shared out among processors."""
+def march_watched(h: Array, R: Array, rules: Sequence[Rule], steps: int, ends: Ends) -> Flags:
+    """Take ``steps`` steps of many piles in place, shape (piles, N), a rule each.
 
-    def march_some(piles: Piles) -> float:
-        return _march_piles(h, R, [rules[i] for i in piles], piles, steps, ends)
-
+    They are shared out among the processors. Returns for which piles dt has been stable after every
+    :data:`BLOCK` steps; the others stop where it was not.
+    """
+    accounts, has_outlasted = np.zeros((len(h), 2)), np.ones(len(h), bool)
     terms = [_terms(rule.parameters()) for rule in rules]
-    together = max(AT_ONCE // max(h.shape[1] * steps, 1), 1)
-    return math.fsum(_shared_out(march_some, terms, together))
+    for part in _parts(steps, h.shape[1]):
+
+        def march_some(piles: Piles, part: int = part) -> None:
+            own, account = [rules[i] for i in piles], accounts[piles]
+            found = _march_piles(h, R, own, piles, part, ends, account, is_watched=True)
+            has_outlasted[piles], accounts[piles] = found, account
+
+        _shared_out(march_some, terms, max(AT_ONCE // max(h.shape[1] * part, 1), 1))
+        if not has_outlasted.all():
+            break
+    return has_outlasted
 
 
-def _march_piles(
-    h: Array, R: Array, rules: Sequence[Rule], piles: Piles, steps: int, ends: Ends
-) -> float:
-    """March some of the piles, whose rules have the same terms."""
-    coefficients = [rule.coefficients() for rule in rules]
-    rows = np.array([row_of(K) for K in coefficients], h.dtype)
-    accounts, K = np.zeros((piles.size, 2)), _as_type(coefficients[0], h.dtype)
-    _march(h, R, piles, rows, K, steps, accounts, _falls(rules, h, ends))
-    return math.fsum(accounts[:, 0])
+def march_frozen(h: Array, R: Array, rule: Rule, steps: int, ends: Ends, surface: Array) -> None:
+    """Take ``steps`` steps in place whose exchange sees the slope of ``surface``."""
+    K, fall = _as_type(rule.coefficients(), h.dtype), _fall(rule, h, ends)
+    _, below = drops(surface, K.repose_drop, fall)
+    for part in _parts(steps, h.size):
+        _march_frozen(h, R, below, K, part, np.zeros(2), fall)
+
+
+def follow(
+    state: State,
+    rule: Rule,
+    ends: Ends,
+    course: Course,
+    until: float,
+    clock: Array,
+    counts: NDArray[np.int64],
+    middle: State,
+) -> int:
+    """Change the state until the time ``until`` lies in the last block of steps, or behind it.
+
+    See :func:`bcre_ca.line.kernels.following.follow`; returns how it ended.
+    """
+    p, fall = rule.parameters(), _fall(rule, state.h, ends)
+    blocks = max(AT_ONCE // (state.h.size * BLOCK), 1)
+    ended = following.UNDERWAY
+    while ended == following.UNDERWAY:
+        ended = int(_follow(state, p, course, until, blocks, fall, clock, counts, middle))
+    return ended
+
+
+def stable_step(h: Array, R: Array, rule: Rule, ends: Ends) -> float:
+    """The largest stable step for these layers; NaN where they are not finite."""
+    every, falls = every_term(rule.parameters()), _falls([rule], h, ends)
+    return float(_bounds_of(h[None], R[None], [every], ONE, falls)[0])
 
 
 def stable_steps(h: Array, R: Array, rules: Sequence[Rule], ends: Ends) -> Array:
@@ -107,7 +127,7 @@ def _bounds_of(
 ) -> Array:
     """Of some of the piles, whose rules have the same scheme and no term absent."""
     rows, largest = np.array([row_of(p) for p in parameters]), np.empty(piles.size)
-    _bounds(h, R, piles, rows, parameters[0].scheme, largest, falls)
+    _stable_steps(h, R, piles, rows, parameters[0].scheme, largest, falls)
     return largest
 
 
@@ -124,6 +144,8 @@ def _shared_out(function: Callable[[Piles], Any], kinds: Sequence[Any], together
             piles, min(max(threads, -(-len(piles) // together)), len(piles))
         )
     ]
+    if len(shares) == 1:
+        return [function(np.asarray(shares[0]))]
     pool = ThreadPoolExecutor(threads)
     try:
         return list(pool.map(function, shares))
@@ -141,25 +163,6 @@ def _scheme(p: Parameters) -> tuple[Any, ...]:
     return type(p.scheme), p.scheme
 
 
-def follow(
-    h: Array, R: Array, rule: Rule, span: float, blocks: int, margin: float, ends: Ends
-) -> Followed:
-    """March over the time ``span`` in steps of ``margin`` of the largest stable one, in place.
-
-    At most ``blocks`` blocks of :data:`BLOCK` steps are taken; the rest of the span is left.
-    """
-    account, counts = np.zeros(2), np.zeros(4, np.int64)
-    p, calibrating, fall = rule.parameters(), rule.calibrating_step(), _fall(rule, h, ends)
-    left = _follow(h, R, p, span, blocks, margin, calibrating, account, fall, counts)
-    return Followed(float(left), float(account[0]), *(int(count) for count in counts))
-
-
-def stable_step(h: Array, R: Array, rule: Rule, ends: Ends) -> float:
-    """The largest stable step for these layers; NaN where they are not finite."""
-    every, falls = every_term(rule.parameters()), _falls([rule], h, ends)
-    return float(_bounds_of(h[None], R[None], [every], ONE, falls)[0])
-
-
 def stepped_cells(R: Array) -> int:
     """Cells that a block of steps of a synchronous rule visits: the wet ones and those in reach."""
     wet = np.flatnonzero(R)
@@ -167,6 +170,32 @@ def stepped_cells(R: Array) -> int:
         return 0
     around = BLOCK + driver.REACH
     return int(min(wet[-1] + 1 + around, R.size) - max(wet[0] - around, 0))
+
+
+def _march_piles(
+    h: Array,
+    R: Array,
+    rules: Sequence[Rule],
+    piles: Piles,
+    steps: int,
+    ends: Ends,
+    accounts: Array,
+    is_watched: bool,
+) -> Flags:
+    """March some of the piles, whose rules have the same terms."""
+    coefficients = [rule.coefficients() for rule in rules]
+    rows = np.array([row_of(K) for K in coefficients], h.dtype)
+    parameters = np.array([row_of(every_term(rule.parameters())) for rule in rules])
+    K, dts = _as_type(coefficients[0], h.dtype), np.array([float(rule.dt) for rule in rules])
+    falls, has_outlasted = _falls(rules, h, ends), np.empty(piles.size, bool)
+    _march(h, R, piles, rows, K, parameters, dts, steps, accounts, falls, is_watched, has_outlasted)
+    return has_outlasted
+
+
+def _parts(steps: int, cells: int) -> list[int]:
+    """The steps in parts of whole blocks, short enough to be interrupted between."""
+    part = max(AT_ONCE // (cells * BLOCK), 1) * BLOCK
+    return [min(part, steps - done) for done in range(0, steps, part)]
 
 
 def _fall(rule: Rule, h: Array, ends: Ends) -> Any:

@@ -21,7 +21,7 @@ def march(h, R, drop, K, steps, account, period_drop):  # type: ignore[no-untype
             flux_out = carried(R[i], R[i + 1], K)
             exchange = eroded(R[i], drop[i], before - drop[i], K)
             h[i], R[i] = deposit_thin(
-                h[i] - exchange, R[i] + ((flux_in - flux_out) + exchange), K.dry
+                h[i] - exchange, R[i] + ((flux_in - flux_out) + exchange), R[i], K.dry, K.emptying
             )
             flux_in = flux_out
             before = drop[i]
@@ -31,5 +31,9 @@ def march(h, R, drop, K, steps, account, period_drop):  # type: ignore[no-untype
             flux_out = carried(R[last], first, K)
             exchange = eroded(R[last], drop[last], before - drop[last], K)
             h[last], R[last] = deposit_thin(
-                h[last] - exchange, R[last] + ((flux_in - flux_out) + exchange), K.dry
+                h[last] - exchange,
+                R[last] + ((flux_in - flux_out) + exchange),
+                R[last],
+                K.dry,
+                K.emptying,
             )

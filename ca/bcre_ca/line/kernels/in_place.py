@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numba
+import numpy as np
 
 from bcre_ca.exchange import carried, deposit_thin, eroded
 from bcre_ca.sums import add
@@ -11,12 +12,15 @@ from bcre_ca.sums import add
 @numba.njit(error_model="numpy")
 def sweep(h, R, K, steps, account, period_drop):  # type: ignore[no-untyped-def]
     """``steps`` sweeps, downhill or uphill; ``period_drop`` is None for open ends."""
+    R_before = np.empty_like(R)
     for _ in range(steps):
+        for i in range(R.size):
+            R_before[i] = R[i]
         for visit in range(h.size):
             i = visit if K.scheme.downhill else h.size - 1 - visit
             add(account, _visit(h, R, i, K, period_drop))
         for i in range(h.size):
-            h[i], R[i] = deposit_thin(h[i], R[i], K.dry)
+            h[i], R[i] = deposit_thin(h[i], R[i], R_before[i], K.dry, K.emptying)
 
 
 @numba.njit(error_model="numpy")

@@ -38,7 +38,8 @@ def _sweep(h, R, cells, K, flux_in, before):  # type: ignore[no-untyped-def]
         flux_out = carried(R_i, R[i + 1], K)
         drop = (h[i] - h[i + 1]) - K.repose_drop
         exchange = eroded(R_i, drop, before - drop, K)
-        h[i], R[i] = deposit_thin(h[i] - exchange, R_i + ((flux_in - flux_out) + exchange), K.dry)
+        R_new = R_i + ((flux_in - flux_out) + exchange)
+        h[i], R[i] = deposit_thin(h[i] - exchange, R_new, R_i, K.dry, K.emptying)
         flux_in = flux_out
         before = drop
 
@@ -49,7 +50,7 @@ def leave(h, R, last, K, flux_in, above, account):  # type: ignore[no-untyped-de
     foot = K.courant * R[last]
     exchange = eroded_at_foot(R[last], above, K)
     h[last], R[last] = deposit_thin(
-        h[last] - exchange, R[last] + ((flux_in - foot) + exchange), K.dry
+        h[last] - exchange, R[last] + ((flux_in - foot) + exchange), R[last], K.dry, K.emptying
     )
     add(account, foot)
 
@@ -113,5 +114,9 @@ def periodic(h, R, K, steps, period_drop):  # type: ignore[no-untyped-def]
         exchange = eroded(R_last, drop_last, drop_before - drop_last, K)
         _sweep(h, R, last, K, into_first, drop_last)
         h[last], R[last] = deposit_thin(
-            h_last - exchange, R_last + ((into_last - into_first) + exchange), K.dry
+            h_last - exchange,
+            R_last + ((into_last - into_first) + exchange),
+            R_last,
+            K.dry,
+            K.emptying,
         )

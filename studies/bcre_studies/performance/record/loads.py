@@ -12,7 +12,6 @@ import numpy as np
 from pde import CartesianGrid
 
 import bcre_ca
-from bcre_ca.line.kernels import march_many
 from bcre_ca.rule import Ends, Scheme
 from bcre_pde import Material
 from bcre_pde.equation import BCRE
@@ -73,7 +72,7 @@ def right_hand_side(cells: int, evaluations: float = 2e6) -> Load:
 def batch(scenes: int, cells: int, steps: int) -> Load:
     """Many scenes of one rule in one call."""
     h, R = (np.tile(layer, (scenes, 1)) for layer in wet_slope(cells))
-    return Load(lambda: march_many(h, R, [RULE] * scenes, steps, "periodic"), float(h.size * steps))
+    return Load(lambda: bcre_ca.evolve_many(h, R, RULE, steps, "periodic"), float(h.size * steps))
 
 
 def partly_wet(cells: int, share: float, steps: int) -> tuple[Load, Load]:

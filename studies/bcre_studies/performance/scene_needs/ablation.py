@@ -154,36 +154,57 @@ def _stepped(scene: Scene, model: Model) -> Trial:
 
 
 def recorded_times(scene: Scene) -> list[float]:
-    """About :data:`FRAMES` times from 0 to the end, on whole steps where the scene has a fixed one.
-
-    A frame between two steps would be reached by a shorter one, which diffuses more.
-    """
-    times, step = frame_times(scene, FRAMES), scene.time.step
-    if step == "auto":
-        return times
-    return sorted({round(time / step) * step for time in times[:-1]} | {times[-1]})
+    """:data:`FRAMES` times from 0 to the end."""
+    return frame_times(scene, FRAMES)
 
 
 def _in_single_precision(
     pile: bcre_ca.Pile, rule: bcre_ca.Rule, times: list[float], scene: Scene
 ) -> Iterator[bcre_ca.Pile]:
     """:func:`bcre_ca.frames` in single precision: the same steps, as long as rounding lets them."""
-    ends, fixed = scene.domain.ends, scene.time.step != "auto"
-    h, R = _single(pile.h), _single(pile.R)
+    ends, fixed, block = scene.domain.ends, scene.time.step != "auto", bcre_ca.BLOCK
+    t, steps, dt = pile.t, pile.steps, 0.0
+    layers = after = _single(pile.h), _single(pile.R)
     for time in times:
-        steps, left = pile.steps, time - pile.t
-        while left > 1e-9 * time and R.any():
-            wanted = rule.dt if fixed else bcre_ca.MARGIN * _bound(h, R, rule, ends)
-            block = max(math.ceil(left / wanted * (1 - 1e-9)), 1)
-            if block > bcre_ca.BLOCK:
-                block, dt = bcre_ca.BLOCK, wanted
-            else:
-                dt = left / block
-            h, R, dt = _shortened(h, R, replace(rule, dt=dt), block, ends)
-            steps += block
-            left -= block * dt
-        pile = bcre_ca.Pile(h.astype(float), R.astype(float), time, 0.0, steps)
-        yield pile
+        while time > t + block * dt * (1 + 1e-9) and after[1].any():
+            layers, t, steps = after, t + block * dt, steps + (block if dt else 0)
+            bound = math.inf if fixed else _bound(*layers, rule, ends)
+            wanted = bcre_ca.MARGIN * bound if math.isfinite(bound) else rule.dt
+            after, dt = _shortened(*layers, replace(rule, dt=wanted), block, ends)
+        if time > t + block * dt * (1 + 1e-9):
+            found, taken = after, block if dt else 0
+        else:
+            found, taken = _between_steps(layers, replace(rule, dt=dt or rule.dt), time - t, ends)
+        h, R = (layer.astype(float) for layer in found)
+        yield bcre_ca.Pile(h, R, time, 0.0, steps + taken)
+
+
+def _between_steps(
+    layers: tuple[Array, Array],
+    rule: bcre_ca.Rule,
+    since: float,
+    ends: Ends,
+    frozen: Array | None = None,
+) -> tuple[tuple[Array, Array], int]:
+    """The layers after a time, linear between two steps, and how many steps reach it."""
+    steps = math.floor(since / rule.dt + 1e-9)
+    share = since / rule.dt - steps
+    before = _taken(layers, rule, steps, ends, frozen)
+    if share <= 1e-9:
+        return before, steps
+    after = _taken(before, rule, 1, ends, frozen)
+    h, R = ((1 - share) * a + share * b for a, b in zip(before, after, strict=True))
+    return (h, R), steps + 1
+
+
+def _taken(
+    layers: tuple[Array, Array], rule: bcre_ca.Rule, steps: int, ends: Ends, frozen: Array | None
+) -> tuple[Array, Array]:
+    if frozen is not None:
+        return bcre_ca.evolve(*layers, rule, steps, ends, frozen)
+    h, R = (layer.copy() for layer in layers)
+    bcre_ca.march(h, R, rule, steps, ends)
+    return h, R
 
 
 def _single(layer: Array) -> Any:
@@ -197,11 +218,11 @@ def _bound(h: Array, R: Array, rule: bcre_ca.Rule, ends: Ends) -> float:
 
 def _shortened(
     h: Array, R: Array, rule: bcre_ca.Rule, steps: int, ends: Ends
-) -> tuple[Array, Array, float]:
+) -> tuple[tuple[Array, Array], float]:
     """A block of steps, in steps of half the length for as long as they are outgrown; their dt."""
     for _ in range(MOST_HALVINGS):
         try:
-            return *bcre_ca.evolve(h, R, rule, steps, ends), rule.dt
+            return bcre_ca.evolve(h, R, rule, steps, ends), rule.dt
         except (bcre_ca.UnstableStep, FloatingPointError):
             rule = replace(rule, dt=rule.dt / 2)
     raise Refused("no step is short enough in single precision")
@@ -219,14 +240,15 @@ def _on_frozen_slope(scene: Scene, model: Model) -> Trial:
         bound = bcre_ca.largest_stable_step(bcre_ca.Pile(h, np.zeros_like(R)), rule, ends)
         rule = replace(rule, dt=min(bcre_ca.MARGIN * bound, changed.time.until))
     piles = [bcre_ca.Pile(h, R)]
-    cell_steps = 0.0
+    state: tuple[Array, Array] = (h, R)
+    taken = 0
     for time in recorded_times(scene)[1:]:
-        before = piles[-1]
-        steps = math.ceil((time - before.t) / rule.dt * (1 - 1e-9))
-        exact = replace(rule, dt=(time - before.t) / steps)
-        layers = bcre_ca.evolve(before.h, before.R, exact, steps, ends, frozen=h)
-        cell_steps += steps * before.R.size
-        piles.append(bcre_ca.Pile(*layers, time, 0.0, before.steps + steps))
+        whole = math.floor(time / rule.dt + 1e-9)
+        state = bcre_ca.evolve(*state, rule, whole - taken, ends, frozen=h)
+        taken = whole
+        layers, steps = _between_steps(state, rule, time - taken * rule.dt, ends, frozen=h)
+        piles.append(bcre_ca.Pile(*layers, time, 0.0, taken + steps))
+    cell_steps = float(piles[-1].steps * R.size)
     cost = cell_steps * _cost(changed, rule, single=False)
     return Trial(run_of(changed, piles), cell_steps, cost)
 
