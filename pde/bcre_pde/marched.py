@@ -35,6 +35,7 @@ class Marched(PDEBase):  # type: ignore[misc]
         self.evaluations = 0
         self.most_evaluations = most_evaluations
         self.last_time = 0.0
+        self.step_error = math.nan
         self._layers = np.zeros(state.data.shape)
         self.last_layers = self._layers
         self._rates = state.copy()

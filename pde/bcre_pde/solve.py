@@ -81,6 +81,7 @@ def solve(
             state, steps = advance(marched, state, (now, then), method, tolerance)
             record.steps += steps
             record.evaluations += marched.evaluations - counted
+            record.step_error = marched.step_error
             now = then
         record.add(state, then, time.perf_counter() - began)
         if stop is not None and stop(record.solution(ends_only=True)):
@@ -97,6 +98,7 @@ class _Recorder:
         self.frames: list[tuple[float, Array]] = []
         self.steps = 0
         self.evaluations = 0
+        self.step_error = 0.0
         self.wall_s = 0.0
 
     def add(self, state: FieldCollection, t: float, wall_s: float) -> None:
@@ -117,6 +119,7 @@ class _Recorder:
             steps=self.steps,
             evaluations=self.evaluations,
             wall_s=self.wall_s,
+            step_error=self.step_error,
         )
 
 

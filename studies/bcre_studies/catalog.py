@@ -59,6 +59,9 @@ STUDIES = {
     "order_of_accuracy": Entry(
         "verification.order_of_accuracy", "Observed order of accuracy on exact solutions"
     ),
+    "error_estimate": Entry(
+        "verification.error_estimate", "How often BCRE's own error estimate covers the true error"
+    ),
     "speed_error": Entry("performance.speed_error", "Speed against error"),
     "scaling": Entry("performance.scaling", "Speed by size, and the real-time budget"),
     "scene_needs": Entry("performance.scene_needs.study", "What does a scene need?"),

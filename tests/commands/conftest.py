@@ -1,15 +1,8 @@
-"""The command in this process, in a folder of its own."""
+"""A scene with a table, for the command to run."""
 
-import contextlib
-import io
-import sys
 from pathlib import Path
-from typing import NamedTuple
-from unittest import mock
 
 import pytest
-
-from bcre_studies import cli
 
 TABLE = "x,h\n" + "".join(f"{x},{0.49 * (10 - x)}\n" for x in range(11))
 
@@ -35,42 +28,6 @@ amplitude = 0.1
 centre = 3.0
 width = 1.0
 """
-
-
-class Ended(NamedTuple):
-    """How a command ended: its exit code and what it printed."""
-
-    code: int
-    out: str
-    err: str
-
-    @property
-    def refusal(self):
-        """The one line of a command that refuses its input."""
-        assert self.code == 2, self
-        assert self.out == ""
-        (line,) = self.err.splitlines()
-        return line.removeprefix("bcre: ")
-
-
-def run_bcre(*arguments):
-    """``bcre`` with these arguments."""
-    out, err = io.StringIO(), io.StringIO()
-    argv = mock.patch.object(sys, "argv", ["bcre", *map(str, arguments)])
-    with argv, contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        try:
-            cli.main()
-            code = 0
-        except SystemExit as ended:
-            code = ended.code
-    return Ended(code, out.getvalue(), err.getvalue())
-
-
-@pytest.fixture
-def bcre(monkeypatch, tmp_path):
-    """The command, started in an empty folder."""
-    monkeypatch.chdir(tmp_path)
-    return run_bcre
 
 
 @pytest.fixture

@@ -63,14 +63,14 @@ def test_difference_of_the_figures_is_what_cell_size_explains(rows, case):
         assert row[f"{kind}_error"] <= SHARE * max(row[kind], TOLERANCE)
 
 
-def test_better_schemes_are_nearer_in_figures_2_and_3_but_calibration_is_not_in_figure_1(rows):
+def test_better_schemes_are_nearer_in_all_figures_but_calibration_by_little_in_figure_1(rows):
     for (figure, _, refinement), row in rows.items():
         papers = row["difference_upwind_auto"]
         assert row["difference_limited"] < 0.4 * papers
         if figure != "figure1":
             assert row["difference_calibrated"] < 0.2 * papers
         elif refinement == 1:
-            assert 1.05 * papers < row["difference_calibrated"] < 1.2 * papers
+            assert 0.8 * papers < row["difference_calibrated"] < 0.95 * papers
 
 
 @pytest.mark.parametrize(("time", "refinement"), FIGURE_1)

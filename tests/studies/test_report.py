@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bcre_studies import catalog, cli
+from bcre_studies import catalog
 from bcre_studies.comparison.claim import Claim, quality_check
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON
@@ -84,18 +84,8 @@ def fake(places, monkeypatch):
 
 
 @pytest.fixture
-def bcre(monkeypatch, capsys):
-    def bcre(*arguments):
-        monkeypatch.setattr(sys, "argv", ["bcre", *arguments])
-        try:
-            cli.main()
-            code = 0
-        except SystemExit as ended:
-            code = ended.code
-        printed = capsys.readouterr()
-        return code, printed.out, printed.err
-
-    return bcre
+def bcre(run_bcre):
+    return run_bcre
 
 
 def contents(folder):

@@ -8,11 +8,13 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
-from bcre_pde import grid_convergence_index
+import bcre_pde
 from bcre_studies.models.run import Run
 from bcre_studies.observables import named as observables
 from bcre_studies.scenes.domain import Array
@@ -46,16 +48,20 @@ def deviation(run: Run, reference: Run, observable: str = "R") -> float:
     return gap / scale if scale > 0 and math.isfinite(gap) else math.inf
 
 
-def uncertainty(fine: Run, medium: Run, coarse: Run, observable: str = "R") -> float:
-    """Grid convergence index of the finest of three runs, each on twice the cells of the last.
+def uncertainty(runs: Sequence[Run], observable: str = "R") -> float:
+    """Error of the finest of BCRE's runs, by :func:`bcre_pde.error_of_finest`.
 
     Of the deviations between them, so in their unit; infinite where one of them is.
+
+    Parameters
+    ----------
+    runs: at least three, each on twice the cells of the one before.
     """
-    last = deviation(medium, fine, observable)
-    before = deviation(coarse, medium, observable)
-    if not (math.isfinite(last) and math.isfinite(before)):
+    pairs = itertools.pairwise(runs[-bcre_pde.LEAST_GRIDS :])
+    changed = [deviation(coarse, fine, observable) for coarse, fine in pairs]
+    if not all(map(math.isfinite, changed)):
         return math.inf
-    return grid_convergence_index(0.0, last, last + before).error
+    return bcre_pde.error_of_finest(changed, jump=bcre_pde.jump_stands(*runs[-2:])).error
 
 
 def _rolling(run: Run, x: Array) -> Array:

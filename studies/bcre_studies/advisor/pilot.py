@@ -2,7 +2,7 @@ r"""Short runs on coarse grids: a reference with its own error, and every model 
 
 All models are run on 25, 50, 100, ... cells, from the first that hold the start
 (:mod:`bcre_studies.scenes.held`). The reference is the finest pilot of BCRE on py-pde,
-refined until its grid convergence index (:mod:`bcre_pde.refine`) is small against the tolerance,
+refined until its own error (:mod:`bcre_pde.convergence`) is small against the tolerance,
 or until its part of the allowance is spent. A model is piloted until it is known well enough.
 """
 
@@ -13,8 +13,6 @@ import statistics
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-
-import numpy as np
 
 import bcre_pde
 from bcre_studies.advisor.candidate import Candidate, Pilot
@@ -36,9 +34,6 @@ REFERENCE_SHARE = 0.5
 
 SHORT_S = 0.02
 """Shorter pilots are run three times, for their time; the median counts."""
-
-SHARP = 0.75
-"""A scarp: the largest fall of u from cell to cell stays by this part as the cells are halved."""
 
 
 class PilotError(ValueError):
@@ -157,8 +152,7 @@ class Reference:
     @property
     def has_scarp(self) -> bool:
         """Whether at some time u falls over a single cell, whatever the cells: a jump."""
-        coarse, fine = (float(np.max(np.abs(np.diff(run.u, axis=1)))) for run in self.runs[-2:])
-        return fine > SHARP * coarse
+        return bcre_pde.jump_stands(*self.runs[-2:])
 
     def candidate(self, observable: str) -> Candidate:
         """BCRE itself as one of the models; the error of its finest pilot is the reference's."""
@@ -191,7 +185,7 @@ def reference(
                 raise
             break
         if len(runs) >= LEAST_PILOTS:
-            error = uncertainty(runs[-1], runs[-2], runs[-3], observable)
+            error = uncertainty(runs, observable)
         cells *= 2
     if len(runs) < LEAST_PILOTS:
         raise PilotError(f"{cells} cells of BCRE would take about {expected:.2g} s")

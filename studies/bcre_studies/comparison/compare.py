@@ -1,7 +1,7 @@
 """The comparison that every study makes: automaton, BCRE, and BCRE with the automaton's diffusion.
 
-The PDE is refined until the grid convergence index of what is measured is a tenth of the
-difference from the automaton (or of the tolerance, where the difference is smaller still).
+The PDE is refined until its own error in what is measured is a tenth of the difference from the
+automaton (or of the tolerance, where the difference is smaller still).
 """
 
 from __future__ import annotations
@@ -170,7 +170,13 @@ def refine_each(
     /,
     **refinement: Any,
 ) -> list[Measured]:
-    """Solve until each error is :data:`SHARE` of the difference from the automaton's value."""
+    """Solve until each error is :data:`SHARE` of the difference from the automaton's value.
+
+    Of the grids the coarsest is the first that can hold the start of the scene.
+    """
+    coarsest = refinement.pop("coarsest", bcre_pde.COARSEST)
+    while not scene.holds(coarsest):
+        coarsest *= 2
 
     def allowed(values: Sequence[Any]) -> list[float]:
         return [
@@ -183,6 +189,7 @@ def refine_each(
         times,
         lambda solution: measure(run_of(scene, solution)),
         allowed,
+        coarsest,
         **refinement,
     )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -75,30 +75,33 @@ class Bcre(Adapter):
     def answer(
         self, scene: Scene, times: Sequence[float], earlier: Sequence[Run], stop: Stop
     ) -> Run:
-        """On the scene's grid, or refined until its error in R, over all frames, is small.
+        """On the scene's grid, or refined until its errors in R and h, over all frames, are small.
 
-        Small is a tenth of the difference from the first earlier run, or a thousandth of R.
+        Small is a tenth of the difference from the first earlier run, or a thousandth of the mean
+        rolling layer.
         """
         x = scene.centres()
 
         def measure(run: Run) -> list[Array]:
-            return [np.array([run.sample(x, frame=frame) for frame in range(run.t.size)])]
+            frames = range(run.t.size)
+            return [np.array([run.sample(x, field, frame) for frame in frames]) for field in "Ru"]
 
         def allowed(values: Sequence[Array]) -> list[float]:
-            (R,) = values
-            relative = ALONE * float(np.mean(np.abs(R)))
+            least = ALONE * float(np.mean(np.abs(values[0])))
             if not earlier:
-                return [relative]
-            return [SHARE * max(float(np.mean(np.abs(R - earlier[0].R))), relative)]
+                return [least, least]
+            others = earlier[0].R, earlier[0].u
+            gaps = [np.mean(np.abs(a - b)) for a, b in zip(values, others, strict=True)]
+            return [max(SHARE * float(gap), SHARE * least) for gap in gaps]
 
         try:
-            (found,) = self.measured(scene, times, measure, allowed, stop)
+            found = self.measured(scene, times, measure, allowed, stop)
         except bcre_pde.SolveError as failure:
             raise SceneError(
                 f"solver.method = {scene.solver.method!r}: {failure}; must be a method that can "
                 f"solve this scene to solver.tolerance = {scene.solver.tolerance!r}"
             ) from None
-        return run_of(scene, found.solution, found.error)
+        return run_of(scene, found[0].solution, found)
 
     def measured(
         self,
@@ -126,8 +129,7 @@ class Bcre(Adapter):
 
         if scene.solver.cells is not None:
             return bcre_pde.measure_refined(on_cells, _given_grids(scene))
-        grids = {"coarsest": _coarsest(scene), "finest": finest(scene)}
-        return bcre_pde.solve_refined_each(problem, times, on_solution, allowed, **grids, **options)
+        return bcre_pde.measure_refined(on_cells, _grids(scene), allowed)
 
     def require_runnable(self, scene: Scene) -> None:
         grid = scene.solver.cells or COARSEST
@@ -171,12 +173,26 @@ def solver_options(scene: Scene, stop: Stop | None = None) -> dict[str, Any]:
     return options
 
 
-def run_of(scene: Scene, solution: bcre_pde.Solution, error: float | None = None) -> Run:
-    """A solution as the record of the scene; ``error`` is that of R, in the mean absolute value."""
+def run_of(
+    scene: Scene, solution: bcre_pde.Solution, measured: Sequence[bcre_pde.Measured] = ()
+) -> Run:
+    """A solution as the record of the scene, with the errors of R and of h where they are known.
+
+    They are mean absolute values over all frames, relative to the mean rolling layer: what the grid
+    adds by its convergence, and what the steps in time add by the sum of theirs.
+    """
     facts: dict[str, Any] = {}
-    if error is not None:
-        relative = error / (float(np.mean(np.abs(solution.R))) or 1.0)
-        facts["error_estimate"] = relative if math.isfinite(relative) else None
+    if measured:
+        R, u = measured
+        layer = float(np.mean(np.abs(solution.R))) or 1.0
+        steps = solution.step_error * float(np.abs(solution.R).max()) / layer
+        facts = {
+            "error_estimate": _finite(R.error / layer),
+            "error_estimate_h": _finite(u.error / layer),
+            "error_estimate_time": _finite(steps),
+            "observed_order": _finite(R.order),
+            "observed_order_h": _finite(u.order),
+        }
     return Run(
         scene=scene,
         x=solution.x,
@@ -191,20 +207,30 @@ def run_of(scene: Scene, solution: bcre_pde.Solution, error: float | None = None
     )
 
 
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _grids(scene: Scene) -> Iterator[int]:
+    """Ever finer grids, from half of the automaton's cells where those can hold the start."""
+    cells = max(scene.domain.cells, COARSEST)
+    if cells % 2 == 0 and scene.holds(cells // 2):
+        yield cells // 2
+    while cells <= finest(scene):
+        yield cells
+        cells *= 2
+
+
 def _given_grids(scene: Scene) -> list[int]:
-    """The scene's own PDE grid, and for its error two that are two and four times coarser.
+    """The scene's own PDE grid, and for its error three that are two to eight times coarser.
 
     Those that cannot hold the start tell nothing of the error and are left out.
     """
     cells = scene.solver.cells or 0
-    grids = (cells // 4, cells // 2, cells)
+    grids = (cells // 8, cells // 4, cells // 2, cells)
     return [grid for grid in grids if grid >= bcre_pde.SMALLEST_GRID and scene.holds(grid)]
-
-
-def _coarsest(scene: Scene) -> int:
-    return max(scene.domain.cells, COARSEST)
 
 
 def finest(scene: Scene) -> int:
     """Cells of the scene's own PDE grid, or of the finest that it may be refined to."""
-    return scene.solver.cells or max(FINEST, 4 * _coarsest(scene))
+    return scene.solver.cells or max(FINEST, 4 * max(scene.domain.cells, COARSEST))

@@ -82,16 +82,8 @@ class Run:
         values = getattr(self, field)[frame]
         if values.size == x.size and np.allclose(self.x, x, rtol=0, atol=1e-9 * self.d):
             return np.asarray(values)
-        from scipy.interpolate import make_interp_spline
-
-        positions = self.x
-        if self.scene.domain.ends == "periodic":
-            length, wrap = self.scene.domain.length, 4
-            positions = np.concatenate(
-                [positions[-wrap:] - length, positions, positions[:wrap] + length]
-            )
-            values = np.concatenate([values[-wrap:], values, values[:wrap]])
-        return np.asarray(make_interp_spline(positions, values, k=5)(x))
+        period = self.scene.domain.length if self.scene.domain.ends == "periodic" else None
+        return between(self.x, values, x, period)
 
     def to_dataframe(self, **labels: str) -> pd.DataFrame:
         """One row for each time and place, with the columns model, t, x, h and R.
@@ -148,6 +140,17 @@ class Run:
         for name, unit in UNITS.items():
             data[name].attrs = {"long_name": LONG_NAMES[name], "units": unit}
         return data
+
+
+def between(x: Array, values: Array, places: Array, period: float | None) -> Array:
+    """Values at cell centres x, as a quintic spline has them at other places."""
+    from scipy.interpolate import make_interp_spline
+
+    if period is not None:
+        wrap = 4
+        x = np.concatenate([x[-wrap:] - period, x, x[:wrap] + period])
+        values = np.concatenate([values[-wrap:], values, values[:wrap]])
+    return np.asarray(make_interp_spline(x, values, k=5)(places))
 
 
 def frame_times(scene: Scene, frames: int) -> list[float]:

@@ -11,7 +11,8 @@ from matplotlib.animation import FuncAnimation, PillowWriter
 from matplotlib.figure import Figure
 
 from bcre_studies.models.plane.run import PlaneRun
-from bcre_studies.on_plane.picture import LABELS, draw, norm_of
+from bcre_studies.models.registry import MODELS
+from bcre_studies.on_plane.picture import draw, norm_of
 
 SECONDS = 5.0
 """How long it plays, but no frame longer than half a second."""
@@ -31,7 +32,7 @@ def content(runs: Sequence[PlaneRun]) -> bytes:
         for place, run, norm in zip(axes, runs, norms, strict=True):
             place.clear()
             images.append(draw(place, run, frame, norm))
-            place.set_title(f"{LABELS[run.model]}, {place.get_title()}", fontsize=9)
+            place.set_title(f"{MODELS[run.model].label}, {place.get_title()}", fontsize=9)
             place.set_xlabel(f"y, across ({length})")
         axes[0].set_ylabel(f"x, downhill ({length})")
         return images

@@ -13,10 +13,9 @@ from matplotlib.colors import LightSource, LogNorm
 from matplotlib.figure import Figure
 
 from bcre_studies.models.plane.run import PlaneRun
-from bcre_studies.models.registry import AUTOMATON, BCRE
+from bcre_studies.models.registry import MODELS
 from bcre_studies.scenes.domain import Array
 
-LABELS = {AUTOMATON.name: "automaton", BCRE.name: "BCRE (PDE)"}
 DECADES = 3
 """Of R that colours tell apart, down from its largest value."""
 
@@ -50,7 +49,7 @@ def picture(runs: Sequence[PlaneRun]) -> Figure:
         figure.colorbar(image, ax=list(row[:-1]), label=f"R ({length})", shrink=0.8, pad=0.01)
         changed = draw_change(row[-1], run)
         figure.colorbar(changed, ax=row[-1], label=f"change of h ({length})", shrink=0.8)
-        row[0].set_ylabel(f"{LABELS[run.model]}\nx, downhill ({length})")
+        row[0].set_ylabel(f"{MODELS[run.model].label}\nx, downhill ({length})")
     for axes in grid[-1]:
         axes.set_xlabel(f"y, across ({length})")
     figure.suptitle(runs[0].scene.title, fontsize=11)

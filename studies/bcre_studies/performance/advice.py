@@ -70,9 +70,9 @@ FEW = 100
 
 @dataclass(frozen=True)
 class Truth:
-    """BCRE on three grids, coarsest first, the last fine enough to judge by if any is."""
+    """BCRE on doubled grids, coarsest first, the last fine enough to judge by if any is."""
 
-    runs: tuple[Run, Run, Run]
+    runs: tuple[Run, ...]
 
     @property
     def run(self) -> Run:
@@ -80,9 +80,8 @@ class Truth:
         return self.runs[-1]
 
     def error(self, observable: str) -> float:
-        """Its own error, relative: a grid convergence index."""
-        coarse, medium, fine = self.runs
-        return uncertainty(fine, medium, coarse, observable)
+        """Its own error, relative."""
+        return uncertainty(self.runs, observable)
 
     def resolved(self, observable: str) -> bool:
         """Whether others can be judged by it."""
@@ -96,8 +95,8 @@ def truth(scene: Scene) -> Truth:
     runs = [run_model(scene, BCRE.name, times, n) for n in (cells, 2 * cells)]
     while True:
         cells = 2 * runs[-1].x.size
-        runs = [*runs[-2:], run_model(scene, BCRE.name, times, cells)]
-        found = Truth((runs[0], runs[1], runs[2]))
+        runs.append(run_model(scene, BCRE.name, times, cells))
+        found = Truth(tuple(runs))
         if cells >= FINEST_TRUTH or all(map(found.resolved, OBSERVED)):
             return found
 

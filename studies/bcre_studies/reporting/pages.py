@@ -16,11 +16,11 @@ def readable(table: pd.DataFrame) -> pd.DataFrame:
 
 def markdown(table: pd.DataFrame) -> str:
     """A Markdown table."""
-    shown = readable(table).map(_in_cell).rename(columns=_in_cell)
+    shown = readable(table).map(in_cell).rename(columns=in_cell)
     return str(shown.to_markdown(index=False, disable_numparse=True))
 
 
-def _in_cell(text: str) -> str:
+def in_cell(text: str) -> str:
     """A bar would end the cell of a Markdown table."""
     return text.replace("|", r"\|")
 
@@ -31,21 +31,27 @@ def _cell(value: object) -> str:
     return "" if value is None else str(value)
 
 
-def render(template: str, **content: object) -> str:
-    """A page from its template; what is HTML escapes every text put into it."""
+def environment_of(folder: Path) -> jinja2.Environment:
+    """The templates of a folder; those of HTML escape every text put into them."""
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
+        loader=jinja2.FileSystemLoader(folder),
         autoescape=jinja2.select_autoescape(["html.j2"]),
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    environment.filters["sentence"] = _sentence
-    environment.filters["in_cell"] = _in_cell
+    environment.filters["sentence"] = sentence
+    environment.filters["in_cell"] = in_cell
+    return environment
+
+
+def render(template: str, **content: object) -> str:
+    """A page from its template."""
+    environment = environment_of(Path(__file__).parent / "templates")
     return environment.get_template(template).render(**content)
 
 
-def _sentence(text: str) -> str:
+def sentence(text: str) -> str:
     """With a capital at its start; the full stop is the page's."""
     return (text[:1].upper() + text[1:]).rstrip(".")

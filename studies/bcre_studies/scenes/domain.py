@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from pathlib import Path
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, model_validator
 
 Array = NDArray[np.float64]
 
@@ -19,6 +20,19 @@ class StrictTable(BaseModel):
     """A table of a scene file: no unknown keys, no converted types."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+
+class SceneFile(StrictTable):
+    """A whole scene file; the files that it names lie in its folder."""
+
+    _folder: Path = PrivateAttr(default_factory=Path)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _lists_to_tuples(cls, data: Any) -> Any:
+        if not isinstance(data, dict):
+            return data
+        return {key: tuple(part) if isinstance(part, list) else part for key, part in data.items()}
 
 
 class Domain(StrictTable):

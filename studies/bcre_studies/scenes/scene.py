@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import Field, PrivateAttr, ValidationError, model_validator
+from pydantic import Field, ValidationError, model_validator
 
-from bcre_studies.scenes.domain import Array, Domain, NonNegative, Positive, StrictTable
+from bcre_studies.scenes.domain import Array, Domain, NonNegative, Positive, SceneFile, StrictTable
 from bcre_studies.scenes.refusal import SceneError as SceneError
 from bcre_studies.scenes.refusal import first_of, kinds_of, refuse_long_integers
 from bcre_studies.scenes.tables import ProfileError
@@ -66,7 +66,7 @@ class Solver(StrictTable):
     tolerance: Annotated[float, Field(gt=0, lt=1)] = 1e-6
 
 
-class Scene(StrictTable):
+class Scene(SceneFile):
     """A whole scene file."""
 
     title: str
@@ -77,17 +77,6 @@ class Scene(StrictTable):
     rolling: tuple[RollingTerm, ...] = ()
     automaton: Automaton = Automaton()
     solver: Solver = Solver()
-    _folder: Path = PrivateAttr(default_factory=Path)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _lists_to_tuples(cls, data: Any) -> Any:
-        if isinstance(data, dict):
-            return {
-                key: tuple(value) if isinstance(value, list) else value
-                for key, value in data.items()
-            }
-        return data
 
     @model_validator(mode="after")
     def _fits_periodic_ends(self) -> Self:

@@ -87,7 +87,7 @@ def _compare(case: tuple[str, str, int, int]) -> dict[str, Any]:
     automaton = measure(AUTOMATON.run(scene, times))
     row = {"scene": name, "split": split, "d": scene.d, "dt": scene.time.step}
     found = {
-        variant: refine(changed, times, measure, automaton, TOLERANCE, coarsest=100, finest=800)
+        variant: refine(changed, times, measure, automaton, TOLERANCE, coarsest=50, finest=800)
         for variant, changed in _variants(scene).items()
     }
     differences = {

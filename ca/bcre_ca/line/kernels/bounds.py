@@ -9,6 +9,7 @@ import numpy as np
 from numba.extending import register_jitable
 
 from bcre_ca.coefficients import largest_step, parameters_in
+from bcre_ca.rule import ROUNDING
 
 INFINITE = np.float64(np.inf).view(np.int64)
 
@@ -27,19 +28,23 @@ def _number(bits):  # type: ignore[no-untyped-def]
 
 @numba.njit(error_model="numpy")
 def _extremes(h, R, repose_drop):  # type: ignore[no-untyped-def]
-    """Largest R and largest shortfall of a drop, both >= 0; NaN where a layer is not finite.
+    """Largest R and largest shortfall of a drop, both >= 0; NaN where a layer is not finite, or R
+    is negative, which no stable step makes it.
 
     One loop and no function of its own for a cell: else the compiler would not vectorise it.
     """
     last = h.size - 1
     largest, shortfall = _bits(max(R[last], 0.0)), np.int64(0)
-    furthest = _bits(abs(h[last] + R[last]))
+    furthest, signs = _bits(abs(h[last] + R[last])), _bits(R[last])
     for i in range(last):
+        signs = min(signs, np.float64(R[i]).view(np.int64))
         largest = max(largest, np.float64(max(R[i], 0.0)).view(np.int64))
         missing = max(repose_drop - (h[i] - h[i + 1]), 0.0)
         shortfall = max(shortfall, np.float64(missing).view(np.int64))
         furthest = max(furthest, np.float64(abs(h[i] + R[i])).view(np.int64))
     if furthest >= INFINITE:
+        return math.nan, math.nan
+    if signs < 0 and np.min(R) < -ROUNDING * _number(largest):
         return math.nan, math.nan
     return _number(largest), _number(shortfall)
 
@@ -60,7 +65,7 @@ def _largest_bend(h, kappa):  # type: ignore[no-untyped-def]
 def limits(h, R, p, period_drop, foot):  # type: ignore[no-untyped-def]
     """Largest layer and fastest loss per unit of layer, as :func:`largest_step` takes them.
 
-    NaN where the layers are not finite. p holds every term. ``foot`` says whether the last cell is
+    NaN where the layers are not finite or R is negative. p holds every term. ``foot`` says whether the last cell is
     that at the open foot, beyond which the surface goes on at repose, rather than one inside the
     pile.
     """

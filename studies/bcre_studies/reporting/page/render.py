@@ -7,8 +7,9 @@ import re
 from pathlib import Path
 from typing import Any
 
-import jinja2
 from markupsafe import Markup, escape
+
+from bcre_studies.reporting.pages import environment_of
 
 HERE = Path(__file__).parent
 SCRIPT = ("rule", "frames", "chart", "player", "live", "tables", "main")
@@ -17,16 +18,7 @@ SCRIPT = ("rule", "frames", "chart", "player", "live", "tables", "main")
 
 def render(template: str, **content: object) -> str:
     """A page from its template; what is HTML escapes every text put into it."""
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(HERE / "templates"),
-        autoescape=jinja2.select_autoescape(["html.j2"]),
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
-    environment.filters["in_cell"] = in_cell
-    environment.filters["sentence"] = sentence
+    environment = environment_of(HERE / "templates")
     environment.filters["maths"] = maths
     environment.filters["html"] = Markup  # for what this project made: SVG, MathML
     environment.filters["as_json"] = as_json
@@ -63,13 +55,3 @@ def maths(text: str) -> Markup:
     for name, letter in (("gamma", "γ"), ("kappa", "κ"), ("sigma", "σ")):
         safe = re.sub(rf"\b{name}\b", letter, safe.replace(f"{name}<sub>", f"{letter}<sub>"))
     return Markup(safe)
-
-
-def in_cell(text: str) -> str:
-    """A bar would end the cell of a Markdown table."""
-    return text.replace("|", r"\|")
-
-
-def sentence(text: str) -> str:
-    """With a capital at its start; the full stop is the page's."""
-    return (text[:1].upper() + text[1:]).rstrip(".")

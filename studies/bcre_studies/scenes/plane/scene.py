@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import Field, PrivateAttr, ValidationError, model_validator
+from pydantic import Field, ValidationError, model_validator
 
-from bcre_studies.scenes.domain import Array, NonNegative, Positive, StrictTable
+from bcre_studies.scenes.domain import Array, NonNegative, Positive, SceneFile, StrictTable
 from bcre_studies.scenes.plane.domain import PlaneDomain
 from bcre_studies.scenes.plane.grids import GridFile, place_of
 from bcre_studies.scenes.plane.objects import Base, Mask, Source, Wall
@@ -65,7 +65,7 @@ class Units(StrictTable):
     time: Annotated[str, Field(min_length=1, max_length=20)] = "s"
 
 
-class PlaneScene(StrictTable):
+class PlaneScene(SceneFile):
     """A whole scene file."""
 
     title: str
@@ -80,14 +80,6 @@ class PlaneScene(StrictTable):
     automaton: PlaneAutomaton = PlaneAutomaton()
     solver: PlaneSolver = PlaneSolver()
     units: Units = Units()
-    _folder: Path = PrivateAttr(default_factory=Path)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _lists_to_tuples(cls, data: Any) -> Any:
-        if not isinstance(data, dict):
-            return data
-        return {key: tuple(part) if isinstance(part, list) else part for key, part in data.items()}
 
     @model_validator(mode="after")
     def _fits_periodic_ends(self) -> Self:

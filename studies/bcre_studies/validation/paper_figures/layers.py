@@ -38,13 +38,13 @@ class Series(NamedTuple):
 
 
 SERIES = (
-    Series(PROFILE, "figure1", (180.0, 200.0), {"coarsest": 800, "finest": 3200}),
-    Series(PICTURE, "figure1", (250.0,), {"coarsest": 200, "finest": 800}),
-    Series(PROFILE, "figure2", (20.0,), {"coarsest": 200, "finest": 800}),
-    Series(PROFILE, "figure3", (10.0,), {"coarsest": 200, "finest": 800}),
+    Series(PROFILE, "figure1", (180.0, 200.0), {"coarsest": 400, "finest": 3200}),
+    Series(PICTURE, "figure1", (250.0,), {"coarsest": 100, "finest": 800}),
+    Series(PROFILE, "figure2", (20.0,), {"coarsest": 100, "finest": 800}),
+    Series(PROFILE, "figure3", (10.0,), {"coarsest": 100, "finest": 800}),
 )
-"""Those of figure 1 begin where D/(v + c), over which R decays ahead of its scarp, is one cell."""
-EFFECTIVE_GRIDS = {"coarsest": 200, "finest": 800}
+"""Figure 1: D/(v + c), over which R decays ahead of its scarp, is one cell of 800."""
+EFFECTIVE_GRIDS = {"coarsest": 100, "finest": 800}
 Row = dict[str, Any]
 
 

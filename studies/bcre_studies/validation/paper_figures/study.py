@@ -70,7 +70,7 @@ def run() -> dict[str, pd.DataFrame]:
 def _compare_climb(name: str) -> Row:
     scene = load(name).with_changes(step=0.2)
     times = frame_times(scene, 201)
-    result = compare(scene, times, climb_time, TOLERANCE, coarsest=100, finest=400)
+    result = compare(scene, times, climb_time, TOLERANCE, coarsest=50, finest=400)
     return {"quantity": CLIMB, "case": name, "t": np.nan, "d": scene.d, **result.row()}
 
 

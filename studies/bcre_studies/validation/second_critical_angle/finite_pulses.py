@@ -117,7 +117,9 @@ def _outcome_claim(rows: pd.DataFrame) -> Claim:
 
 def _threshold_claim(rows: pd.DataFrame, sd: Any) -> Claim:
     small, large = rows.iloc[0], rows.iloc[-1]
-    falls = all((rows[column].diff().iloc[1:] <= 0).all() for column in ("automaton", BCRE.name))
+    falls = all(
+        (rows[column].diff().iloc[1:] <= 0).all() for column in (AUTOMATON.column, BCRE.column)
+    )
     return Claim(
         "threshold against pulse",
         "A pulse of given size climbs from the same slope on in both models.",

@@ -169,7 +169,7 @@ def _sd_claim(what: str, rows: pd.DataFrame) -> Claim:
         f"{row['difference_effective']:.2g} with D + v d/2; {row[FINER]:.4g} on cells of d/4"
         for _, row in rows.iterrows()
     ]
-    steep = rows[rows[["automaton", BCRE.name]].min(axis=1) + SC > STEEPEST]
+    steep = rows[rows[[AUTOMATON.column, BCRE.column]].min(axis=1) + SC > STEEPEST]
     left = rows[rows["difference_effective"] > TOLERANCE]
     return Claim(
         f"second critical slope, {what}",

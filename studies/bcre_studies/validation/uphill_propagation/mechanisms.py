@@ -106,7 +106,7 @@ def wave(d: float, R0: float) -> list[Row]:
         speed,
         [theory],
         TOLERANCE,
-        coarsest=20,
+        coarsest=10,
         finest=160,
     )
     own_theory = bcre_ca.theory.surface_mode_rate(rule.gamma, R0, d, rule.dt, k).imag / k
@@ -129,7 +129,7 @@ def scarp(d: float) -> list[Row]:
         lambda run: [fronts.scarp_speed(run, H) for H in HEIGHTS],
         laws,
         TOLERANCE,
-        coarsest=80,
+        coarsest=40,
         finest=640,
     )
     return [
