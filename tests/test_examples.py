@@ -61,7 +61,7 @@ def test_notebook_runs_and_says_what_it_holds(tmp_path):
 
     notebook = nbformat.read(EXAMPLES / "second_critical_slope.ipynb", as_version=4)
     stored = [printed(cell) for cell in notebook.cells if cell.cell_type == "code"]
-    NotebookClient(notebook, timeout=120, resources={"metadata": {"path": tmp_path}}).execute()
+    NotebookClient(notebook, timeout=600, resources={"metadata": {"path": tmp_path}}).execute()
     found = [printed(cell) for cell in notebook.cells if cell.cell_type == "code"]
     assert found == stored
     assert any(found)

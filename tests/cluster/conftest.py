@@ -61,8 +61,8 @@ class Cluster:
             )
             for _ in range(2)
         ]
-        with Client(scheduler_file=str(file), timeout=30) as client:
-            client.wait_for_workers(2, timeout=30)
+        with Client(scheduler_file=str(file), timeout=300) as client:
+            client.wait_for_workers(2, timeout=300)
             address = client.scheduler.address
         return cls(folder, environment, scheduler, address, workers)
 
@@ -93,7 +93,7 @@ class Cluster:
     def worker_pids(self):
         """Of the two processes that measure, below those that look after them."""
         with Client(self.address) as client:
-            client.wait_for_workers(2, timeout=30)
+            client.wait_for_workers(2, timeout=300)
             return list(client.run(os.getpid).values())
 
     def traced(self):
@@ -102,7 +102,7 @@ class Cluster:
         return Counter(path.read_text().split()) if path.exists() else Counter()
 
     def wait_for_points(self, count):
-        until = time.monotonic() + 30
+        until = time.monotonic() + 300
         while len(self.traced()) < count and time.monotonic() < until:
             time.sleep(0.02)
 

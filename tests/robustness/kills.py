@@ -26,9 +26,9 @@ from bcre_studies.system import pickles
 
 SIGNALS = (signal.SIGKILL, signal.SIGINT, signal.SIGTERM)
 
-GRACE = 15.0
+GRACE = 300.0
 """Seconds within which a killed run's workers must be gone. They look twice a second, but one that
-is just being started has to import the libraries first."""
+is just being started has to import the libraries first, on a busy machine for minutes."""
 
 # A shell that starts a command in the background has it ignore SIGINT, and children inherit that.
 _COMMAND = (

@@ -24,7 +24,7 @@ def test_each_choice_changes_what_it_names_and_nothing_else(factor):
     for choice in ("N", "d = dt"):
         rule = rule_of(found[choice])
         assert rule.v * rule.dt / rule.d == pytest.approx(0.04)
-    assert found["height"].material.gamma == 0.01 / factor
+    assert found["scale of h"].material.gamma == 0.01 / factor
 
 
 def test_a_choice_that_a_scene_does_not_have_or_cannot_hold_is_not_posed():
@@ -37,7 +37,7 @@ def test_a_choice_that_a_scene_does_not_have_or_cannot_hold_is_not_posed():
 @pytest.mark.parametrize("name", ["figure 2, R", "one small avalanche above repose"])
 def test_the_unit_of_height_and_the_tilt_change_no_verdict(name, factor):
     stands = study._word((name, "", 1.0))
-    assert study._word((name, "height", factor)) == stands
+    assert study._word((name, "scale of h", factor)) == stands
     assert study._word((name, "Sc", factor)) == stands
 
 

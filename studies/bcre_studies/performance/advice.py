@@ -7,8 +7,8 @@ at the end, and in h, L1 of its change relative to that.
 * **Random scenes** (``random_scenes``): the advised model is run on the advised
   cells. A scene whose BCRE does not come that far on 1600 cells is unresolved and counted apart;
   one that does, but for which nothing was advised, is declined and counts as not met.
-* **Foretold**: on the same scenes the automaton's pilots end at 100 cells, and every scheme that
-  is foretold to meet the tolerance on finer ones is run there.
+* **Extrapolated**: on the same scenes the automaton's pilots end at 100 cells, and every scheme
+  that is predicted to meet the tolerance on finer ones is run there.
 * **Built-in scenes and one more**: every model is run on finer and finer grids until it meets the
   tolerance and stays there, and the cheapest of them is compared with what was advised.
 
@@ -30,6 +30,7 @@ from bcre_studies.advisor.question import Question
 from bcre_studies.comparison.claim import Claim, quality_check
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.comparison.wording import joined
 from bcre_studies.models.registry import BCRE, CANDIDATES, SCHEMES
 from bcre_studies.models.run import Run, frame_times
 from bcre_studies.performance.random_scenes import kind_of, random_scene
@@ -183,7 +184,7 @@ def _advised(index: int, scene: Scene, observable: str, true: Truth) -> dict[str
 
 
 def _extrapolated(index: int, scene: Scene, true: Truth) -> list[dict[str, Any]]:
-    """Every scheme that is foretold beyond its pilots, with what it really does there."""
+    """Every scheme that is predicted beyond its pilots, with what it really does there."""
     rows = []
     for option in _advice(scene, "R", finest=FEW).options:
         if option.model in SCHEMES and FEW < option.cells <= FINEST_TRUTH:
@@ -238,7 +239,7 @@ def _price(scene: Scene, model: str, cells: int, steps: float, frames: int = FRA
 def _unjudged(name: str, scene: Scene) -> dict[str, Any]:
     """A scene without a converged solution; the advice should say so too."""
     advice = _advice(scene, "R")
-    return {"scene": name, "result": "unresolved" if not advice.options else "not told"}
+    return {"scene": name, "result": "unresolved" if not advice.options else "not said"}
 
 
 def _least(scene: Scene, model: str, true: Truth) -> tuple[int, int] | None:
@@ -256,11 +257,11 @@ def _least(scene: Scene, model: str, true: Truth) -> tuple[int, int] | None:
 
 
 def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
-    """Whether what is advised, foretold and cheapest is so."""
+    """Whether what is advised, extrapolated and cheapest is so."""
     table = tables["comparison"]
     return [
         *(_met(table[table["observable"] == name], name) for name in OBSERVED),
-        _foretold(tables["extrapolated"]),
+        _from_coarse_pilots(tables["extrapolated"]),
         _cheapest(tables["cheapest"]),
         _in_time(recorded_tables("advice")["advice"]),
     ]
@@ -285,13 +286,13 @@ def _met(table: pd.DataFrame, observable: str) -> Claim:
     )
 
 
-def _foretold(table: pd.DataFrame) -> Claim:
+def _from_coarse_pilots(table: pd.DataFrame) -> Claim:
     met = table[table["result"] == "met"]
     share = len(met) / len(table)
     far = (table["cells"] / FEW).max()
     return quality_check(
-        name="foretold from coarse pilots",
-        statement=f"Where pilots end at {FEW} cells, a scheme that is foretold to meet the "
+        name="extrapolated from coarse pilots",
+        statement=f"Where pilots end at {FEW} cells, a scheme that is predicted to meet the "
         f"tolerance on finer ones meets it in at least {MET:.0%} of the cases.",
         verdict=Verdict.AGREE if share >= MET else Verdict.DISAGREE,
         evidence=f"{len(met)} of {len(table)} ({share:.0%}), on grids up to {far:.3g} times finer "
@@ -303,7 +304,7 @@ def _foretold(table: pd.DataFrame) -> Claim:
 def _cheapest(table: pd.DataFrame) -> Claim:
     judged = table[table["result"].isin(["met", "missed"])]
     good = judged[(judged["result"] == "met") & (judged["dearer"] <= DEARER)]
-    honest = not (table["result"] == "not told").any()
+    honest = not (table["result"] == "not said").any()
     worst = judged.loc[judged["dearer"].idxmax()]
     silent = table.loc[table["result"] == "unresolved", "scene"]
     return quality_check(
@@ -314,10 +315,10 @@ def _cheapest(table: pd.DataFrame) -> Claim:
         verdict=Verdict.AGREE if honest and len(good) == len(judged) else Verdict.DISAGREE,
         evidence=f"{len(good)} of {len(judged)} scenes; the dearest advice costs "
         f"{worst['dearer']:.2g} times the cheapest ({worst['scene']}: {worst['advised']} on "
-        f"{worst['cells']:.0f} cells, {worst['cheapest']} on {worst['cheapest_cells']:.0f}). These "
-        f"runs are so short that most of their time goes into frames: in steps alone the advice "
-        f"costs up to {judged['dearer_in_steps'].max():.2g} times the least. Told to be "
-        f"unresolved: {', '.join(silent)}",
+        f"{worst['cells']:.0f} cells, {worst['cheapest']} on {worst['cheapest_cells']:.0f}); in "
+        f"steps alone, without the time that frames take, up to "
+        f"{judged['dearer_in_steps'].max():.2g} times. Unresolved, and said to be: "
+        f"{joined(silent)}",
         tolerance=f"{DEARER:g}: {WHY_DEARER}",
     )
 
@@ -326,7 +327,7 @@ def _in_time(times: pd.DataFrame) -> Claim:
     """Hits of the predicted times in the committed record of speed."""
     options = times[times["pilots"] == "all"]
     advised = options[options["advised"]]
-    foretold = times[times["pilots"] == "coarse"]
+    coarse = times[times["pilots"] == "coarse"]
     share = float(advised["hit"].mean())
     return quality_check(
         name="predicted time",
@@ -335,20 +336,20 @@ def _in_time(times: pd.DataFrame) -> Claim:
         verdict=Verdict.AGREE if share >= IN_TIME else Verdict.DISAGREE,
         evidence=f"{int(advised['hit'].sum())} of {len(advised)} scenes ({share:.0%}) in the "
         f"record of speed; of all models with pilots as fine as they are advised "
-        f"{int(options['hit'].sum())} of {len(options)}, of those foretold from coarse pilots "
-        f"{int(foretold['hit'].sum())} of {len(foretold)}",
+        f"{int(options['hit'].sum())} of {len(options)}, of those predicted from coarse pilots "
+        f"{int(coarse['hit'].sum())} of {len(coarse)}",
         tolerance="a factor of 2: runs of a tenth of a millisecond differ by as much from one to "
         "the next",
     )
 
 
 def draw(tables: dict[str, pd.DataFrame]) -> Figure:
-    """True error against the predicted one: as advised, and foretold from coarse pilots."""
+    """True error against the predicted one: as advised, and extrapolated from coarse pilots."""
     figure, axes = style.panels(1, 2)
-    random, foretold = tables["comparison"], tables["extrapolated"]
+    random, extrapolated = tables["comparison"], tables["extrapolated"]
     for axis, table, title in (
         (axes[0], random[random["result"] != "unresolved"], "advised"),
-        (axes[1], foretold, f"foretold from pilots of at most {FEW} cells"),
+        (axes[1], extrapolated, f"predicted from pilots of at most {FEW} cells"),
     ):
         ends = np.array([1e-5, 0.3])
         axis.loglog(ends, ends, color="0.55", linewidth=1.0)

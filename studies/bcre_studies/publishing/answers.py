@@ -63,12 +63,17 @@ def _change(found: Headline) -> str:
     if not judged:
         return "BCRE is unresolved in every figure, so nothing can be said."
     apart = listed([f"{percent(gap.difference)} in {figure_name(gap.figure)}" for gap in judged])
-    shares = list(dict.fromkeys(percent(gap.left) for gap in judged))
-    left = f"{shares[0]} is left in each" if len(shares) == 1 else f"{listed(shares)} are left"
+    most = percent(max(gap.left for gap in judged))
     text = (
         f"At the paper’s parameters the rolling layers differ by {apart}. With both terms added to "
-        f"BCRE, {left}."
+        f"BCRE, at most {most} is left."
     )
+    for gap in judged:
+        if gap.until is not None:
+            text += (
+                f" In {figure_name(gap.figure)} that is at t = {number(gap.until)}; later BCRE is "
+                "unresolved."
+            )
     if unjudged:
         text += f" {listed(unjudged).capitalize()} cannot be judged: BCRE is unresolved there."
     return text
@@ -95,7 +100,7 @@ def _pulse(found: Headline) -> str:
     start, end = pulses.most_steepened
     text = (
         f"In {pulses.cases} runs on slopes above repose, one pulse brought {pulses.came_down} down "
-        f"to repose ({pulses.came_down_bcre} in BCRE): those where the avalanche reached the top."
+        f"to repose ({pulses.came_down_bcre} in BCRE)."
     )
     if pulses.steeper:
         text += (
@@ -136,6 +141,7 @@ def certainty(found: Headline) -> list[Answer]:
     judged = [gap for gap in found.gaps if gap.resolved]
     worst = max((gap.own_error for gap in judged), default=math.inf)
     automaton, bcre = found.orders
+    same, tried = found.choices
     facts = []
     if math.isfinite(worst):
         facts.append(
@@ -155,9 +161,9 @@ def certainty(found: Headline) -> list[Answer]:
             "are the orders at which the automaton and BCRE’s solver converge to exact solutions",
         ),
         Answer(
-            number(found.mass_error, 1),
-            "of the sand at most is lost or created in any hard case that runs to its end, ten "
-            "million steps included",
+            f"{same} of {tried}",
+            "times a verdict stays when a choice of ours is halved or doubled: length, slopes, "
+            "pulse, cells",
         ),
     ]
     return facts

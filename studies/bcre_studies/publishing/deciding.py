@@ -7,6 +7,7 @@ the count of claims that hold stands in its place.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
 import pandas as pd
 
@@ -86,12 +87,13 @@ def _one_variable(tables: Tables) -> str:
     )
 
 
-def _profiles(tables: Tables) -> str:
+def _profiles(figures: tuple[str, ...], tables: Tables) -> str:
     rows = tables["comparison"]
     rows = rows[rows["quantity"].str.startswith("R(x)") & (rows["d"] == 1.0)]
+    rows = rows[rows["case"].isin(figures)]
     judged = rows[rows["verdict"] != str(Verdict.UNRESOLVED)]
     if judged.empty:
-        return "unresolved in every figure"
+        return "BCRE is unresolved"
     worst = judged.loc[judged["difference"].idxmax()]
     return (
         f"rolling layers up to {percent(float(worst['difference']))} apart, "
@@ -199,8 +201,8 @@ NUMBERS: dict[Key, Callable[[Tables], str]] = {
     ("second_critical_angle", "second critical slope, other materials"): _other_sd,
     ("one_variable", "return to repose"): _one_variable,
     ("one_variable", "second critical angle"): _one_variable,
-    ("paper_figures", "figure1 profile"): _profiles,
-    ("paper_figures", "figure2 profile"): _profiles,
+    ("paper_figures", "figure1 profile"): partial(_profiles, ("figure1",)),
+    ("paper_figures", "figure2 profile"): partial(_profiles, ("figure2", "figure3")),
     ("paper_figures", "no matter of cells"): _cells,
     ("avalanche_extent", "static layer"): _left,
     ("avalanche_extent", "rolling layer"): _grown,

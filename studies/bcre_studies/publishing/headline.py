@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import pandas as pd
 
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON, BCRE
 from bcre_studies.publishing.wording import (
-    numeric,
     of,
 )
 
@@ -21,13 +21,16 @@ AT_REPOSE = 0.001
 SMALL = 0.05
 """What counts as agreement in a profile; the studies' own tolerance."""
 COARSE, FINE = 0.1, 0.01
+NOT_POSED = "-"
+"""Stands in the study of our choices where a scene has no such choice."""
 
 
 @dataclass(frozen=True)
 class Gap:
     """How far apart the models are in one of the paper's figures, relative L1 of R at d = 1.
 
-    ``left`` is the same once D_eff and kappa_eff are counted, ``own_error`` BCRE's own.
+    ``left`` is the same once D_eff and kappa_eff are counted, ``own_error`` BCRE's own. ``until``
+    is the time of all this where BCRE is unresolved later on.
     """
 
     figure: str
@@ -35,6 +38,7 @@ class Gap:
     left: float
     own_error: float
     resolved: bool
+    until: float | None = None
 
 
 @dataclass(frozen=True)
@@ -88,7 +92,11 @@ class Race:
 
 @dataclass(frozen=True)
 class Headline:
-    """All numbers of the first screen."""
+    """All numbers of the first screen.
+
+    ``choices``: changes of a choice of ours that leave the verdict, of all that were tried;
+    ``orders``: at which the paper's rule and BCRE's solver converge.
+    """
 
     diffusion: tuple[Diffusion, ...]
     gaps: tuple[Gap, ...]
@@ -96,7 +104,7 @@ class Headline:
     pulses: Pulses
     coarse: Race
     fine: Race
-    mass_error: float
+    choices: tuple[int, int]
     orders: tuple[float, float]
 
 
@@ -110,7 +118,7 @@ def headline(tables: Tables) -> Headline:
         pulses=_pulses(tables["repose_return"]["comparison"]),
         coarse=_race(reach, COARSE),
         fine=_race(reach, FINE),
-        mass_error=float(numeric(tables["hard_cases"]["comparison"]["mass_error_at_most"]).max()),
+        choices=_choices(tables["choices"]["comparison"]),
         orders=_orders(tables["order_of_accuracy"]["comparison"]),
     )
 
@@ -133,18 +141,23 @@ def _own_diffusion(row: pd.Series) -> float:
 def _gaps(table: pd.DataFrame) -> tuple[Gap, ...]:
     """At d = 1; of several times of one figure the last at which BCRE is resolved."""
     rows = table[table["quantity"].str.startswith("R(x)") & (table["d"] == 1.0)]
-    found: dict[str, Gap] = {}
-    for _, row in rows.iterrows():
-        gap = Gap(
-            figure=str(row["case"]),
-            difference=float(row["difference"]),
-            left=float(row["difference_effective"]),
-            own_error=float(row["difference_error"]),
-            resolved=row["verdict"] != "unresolved",
+    gaps = []
+    for figure, times in rows.groupby("case", sort=False):
+        times = times.sort_values("t")
+        resolved = times[times["verdict"] != Verdict.UNRESOLVED]
+        last = (resolved if len(resolved) else times).iloc[-1]
+        later = len(resolved) and last["t"] < times["t"].max()
+        gaps.append(
+            Gap(
+                figure=str(figure),
+                difference=float(last["difference"]),
+                left=float(last["difference_effective"]),
+                own_error=float(last["difference_error"]),
+                resolved=len(resolved) > 0,
+                until=float(last["t"]) if later else None,
+            )
         )
-        if gap.resolved or gap.figure not in found:
-            found[gap.figure] = gap
-    return tuple(found.values())
+    return tuple(gaps)
 
 
 def _slopes(table: pd.DataFrame) -> CriticalSlopes:
@@ -203,6 +216,14 @@ def _race(reach: pd.DataFrame, error: float) -> Race:
         else:
             lost_by.append(own / bcre)
     return Race(error, scenes, len(by), tuple(by), tuple(lost_by), better)
+
+
+def _choices(table: pd.DataFrame) -> tuple[int, int]:
+    """How many changes of a choice of ours leave the verdict's word, and how many there are."""
+    changed = table[["halved", "doubled"]]
+    posed = changed != NOT_POSED
+    same = changed.eq(table["as it stands"], axis=0)
+    return int((same & posed).to_numpy().sum()), int(posed.to_numpy().sum())
 
 
 def _orders(table: pd.DataFrame) -> tuple[float, float]:

@@ -55,8 +55,8 @@ def picture_views(tables: Mapping[str, Tables]) -> list[dict[str, Any]]:
             "avalanche eating its way uphill. The difference is relative to BCRE’s largest R at "
             "the time: orange where the automaton has more, blue where it has less. "
             + (
-                f"From t = {number(seen.resolved_until)} on, hatched, BCRE’s own error is no "
-                "longer small against it."
+                f"From t = {number(seen.resolved_until)} on, hatched, BCRE’s own error on "
+                f"{space_time.GRID} cells is no longer small against it."
                 if seen.resolved_until < space_time.UNTIL
                 else "BCRE is resolved all along."
             ),

@@ -11,7 +11,7 @@ in turn, all else kept:
     place       the pulse's distance from the nearer end
     N           at the same L and dt/d: cells of 2 d and d/2
     d = dt      at the same N: everything in cells stays, and L with it
-    height      h, R, S - Sc times a, gamma over a (``rescale``): exact in both models
+    scale of h  h, R, S - Sc times a, gamma over a (``rescale``): exact in both models
 
 Every verdict is a word that both models give (``WORDS``). Profiles of R are judged as in
 ``paper_figures``, at moderate resolution: BCRE on twice and four times the automaton's cells, whose
@@ -54,7 +54,7 @@ SMOOTHED = 0.95
 """A surface is smoothed once less than this part of its roughness is left."""
 GROWTH = 5.76
 FACTORS = {"halved": 0.5, "doubled": 2.0}
-CHOICES = ("L", "Sc", "S0 - Sc", "width", "place", "N", "d = dt", "height")
+CHOICES = ("L", "Sc", "S0 - Sc", "width", "place", "N", "d = dt", "scale of h")
 NOT_POSED = "-"
 PATIENCE = 3000.0
 FRAMES = 31
@@ -86,7 +86,7 @@ def changed(scene: Scene, choice: str, factor: float) -> Scene | None:
             changes = {"cells": round(factor * cells)} | _stepped(scene, 1 / factor)
         case "d = dt":
             changes = moved | {"length": factor * length} | _stepped(scene, factor)
-        case "height":
+        case "scale of h":
             return rescaled(scene, factor)
     return scene.with_changes(**changes) if changes else None
 

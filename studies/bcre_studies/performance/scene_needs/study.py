@@ -35,6 +35,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from bcre_studies.comparison.claim import Claim, quality_check
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.comparison.wording import sentences, when
 from bcre_studies.observables.named import NAMES, posed, scale, value
 from bcre_studies.performance.record import specialisation
 from bcre_studies.performance.scene_needs.ablation import (
@@ -243,9 +244,13 @@ def _together_claim(table: pd.DataFrame) -> Claim:
         name="left out together",
         statement="What can be left out one by one can be left out together.",
         verdict=Verdict.DISAGREE if broken else Verdict.AGREE,
-        evidence=f"{cases - len(broken)} of {cases} combinations hold; not those of "
-        f"{'; '.join(broken) or 'none'}, where ingredients matter only together and have been put "
-        "back",
+        evidence=sentences(
+            f"{cases - len(broken)} of {cases} combinations hold",
+            when(
+                broken,
+                f"ingredients matter only together, and have been put back, in {'; '.join(broken)}",
+            ),
+        ),
         tolerance=WHY,
     )
 

@@ -20,8 +20,8 @@ def _paper_figures(tables: Tables) -> list[str]:
     at_one = judged[judged["d"] == 1.0]
     finest = judged[judged["d"] == judged["d"].min()]
     sentences = [
-        "Both models start from the same layers. Their rolling layers are compared at the end: "
-        "the area between the two curves, over the area under BCRE’s."
+        "Both models start from the same layers. Their rolling layers are compared by the area "
+        "between the two curves, over the area under BCRE’s."
     ]
     if len(at_one):
         sentences.append(
@@ -29,12 +29,16 @@ def _paper_figures(tables: Tables) -> list[str]:
             f"{span_of(finest['difference'])} with cells a quarter as long. BCRE with D_eff and "
             f"κ_eff is within {percent(float(at_one['difference_effective'].max()))}."
         )
-    unjudged = sorted(set(profiles["case"]) - set(judged["case"]))
+    late = at_one.groupby("case", sort=False)["t"].max()
+    unjudged = [
+        figure_name(str(case)) + (f" after t = {number(late[case])}" if case in late else "")
+        for case, t in profiles.groupby("case", sort=False)["t"].max().items()
+        if case not in late or t > late[case]
+    ]
     if unjudged:
-        names = listed([figure_name(name) for name in unjudged]).capitalize()
         sentences.append(
-            f"{names} stays unresolved: on the finest grid tried BCRE’s own error is not small "
-            "against the difference."
+            f"{listed(unjudged).capitalize()} stays unresolved: on the finest grid tried BCRE’s "
+            "own error is not small against the difference."
         )
     return sentences
 
@@ -80,6 +84,23 @@ def _one_variable(tables: Tables) -> list[str]:
     ]
 
 
+def _choices(tables: Tables) -> list[str]:
+    rows = tables["comparison"]
+    verdicts = rows.groupby("verdict on", sort=False)["stands"].agg(
+        lambda column: all(column == "yes")
+    )
+    turned = rows[rows["stands"] == "no"].groupby("choice", sort=False).size()
+    sentences = [
+        "The paper names v, D and γ only. Length, slopes, pulse, cells and step are our choices; "
+        "each is halved and doubled in turn.",
+        f"{int(verdicts.sum())} of {len(verdicts)} verdicts stand with every change.",
+    ]
+    if len(turned):
+        most = turned.idxmax()
+        sentences.append(f"The choice that turns most verdicts is {most}: {turned[most]} of them.")
+    return sentences
+
+
 STORIES: dict[str, Story] = {
     "paper_figures": Story(
         "Do the paper’s three figures come out alike in both models?",
@@ -101,5 +122,12 @@ STORIES: dict[str, Story] = {
         "Final slope of the one-variable pile, the two-layer automaton and BCRE, undisturbed and "
         "after a pulse.",
         _one_variable,
+    ),
+    "choices": Story(
+        "Do the verdicts depend on what we chose ourselves?",
+        ("x → x/2 and x → 2 x",),
+        "Verdicts by choices: a disc where halving and doubling leave the verdict, a cross where "
+        "one of them turns it.",
+        _choices,
     ),
 }

@@ -107,6 +107,25 @@ def _critical(tables: Tables) -> list[str]:
     ]
 
 
+def _avalanche_extent(tables: Tables) -> list[str]:
+    rows = tables["comparison"].set_index(["case", "quantity"])
+    left, even = rows.loc[("figure1", "left")], rows.loc[("figure1", "even")]
+    rolls, far, wide = (rows.loc[("figure2", q)] for q in ("rolling", "travelled", "spread"))
+    both = [AUTOMATON.column, BCRE.column]
+    wedge = abs(left[AUTOMATON.column] - left["expected"]) <= 0.01 and (even[both] <= 0.01).all()
+    sentences = [
+        f"After figure 1’s avalanche {percent(float(left[AUTOMATON.column]))} of the static layer "
+        f"is left in the automaton and {percent(float(left[BCRE.column]))} in BCRE"
+        + (": the wedge at repose." if wedge else "."),
+        f"Figure 2’s pulse travels {number(float(far[AUTOMATON.column]), 2)} and widens by "
+        f"{number(float(wide[AUTOMATON.column]), 2)} in the automaton, by "
+        f"{number(float(wide[BCRE.column]), 2)} in BCRE.",
+    ]
+    if (rolls[both] <= 1).all():
+        sentences.append("It only loses sand, since it runs on a slope below repose.")
+    return sentences
+
+
 STORIES: dict[str, Story] = {
     "repose_return": Story(
         "Does a slope that is disturbed return to below the angle of repose?",
@@ -147,5 +166,12 @@ STORIES: dict[str, Story] = {
         "Sd over the cell Peclet number, measured and in closed form; what became of each pulse; "
         "and the slope from which on a pulse climbs, over its amplitude.",
         _critical,
+    ),
+    "avalanche_extent": Story(
+        "What does an avalanche move, and how far?",
+        ("left: Sc/S0 + (1 - Sc/S0) d/L", "spread: sqrt(w^2/2 + 2 D t) - w/sqrt(2)"),
+        "Static layer of figure 1 and rolling layer of figure 2, at the start and at the end, in "
+        "the three models.",
+        _avalanche_extent,
     ),
 }

@@ -44,7 +44,7 @@ def compared(name: str) -> dict[str, Any]:
     scene = load(name.partition(",")[0]).with_changes(**SCENES[name])
     start = bcre_ca.Pile(*scene.initial(scene.centres()))
     rule, ends, until = rule_of(scene), scene.domain.ends, scene.time.until
-    times = np.linspace(0.0, until, FRAMES + 1)[1:]
+    times = [float(t) for t in np.linspace(0.0, until, FRAMES + 1)[1:]]
     frames = list(bcre_ca.frames(start, rule, times, ends))
     auto = frames[-1]
     bounds = (bcre_ca.largest_stable_step(frame, rule, ends) for frame in frames)

@@ -38,6 +38,7 @@ from bcre_ca.rule import Scheme
 from bcre_studies.comparison.claim import Claim, quality_check
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.comparison.wording import sentences, when
 from bcre_studies.models.registry import AUTOMATON, BCRE, Look
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
@@ -119,7 +120,7 @@ def _try(attempt: Attempt) -> Row:
         "smallest_R": significant(_cut(end.smallest_R, end.largest_R), 1),
         "largest_R": significant(end.largest_R, 3),
         "end_slope": _slope(end),
-        "told": "",
+        "message": "",
     }
 
 
@@ -127,7 +128,7 @@ def _refusal(failure: Exception) -> Row:
     """What is known of a run without an end; the failure's text says where and by which bound."""
     before = isinstance(failure, ValueError) or getattr(failure, "time", None) == 0
     blank = dict.fromkeys(("mass_error_at_most", "smallest_R", "largest_R", "end_slope"), "")
-    return {"verdict": REFUSED if before else FAILS} | blank | {"told": str(failure)}
+    return {"verdict": REFUSED if before else FAILS} | blank | {"message": str(failure)}
 
 
 def _cut(smallest: float, largest: float) -> float:
@@ -235,8 +236,8 @@ def _mass(table: pd.DataFrame) -> Claim:
 def _says_where(table: pd.DataFrame) -> Claim:
     failing = table[table["verdict"] == FAILS]
     refused = table[table["verdict"] == REFUSED]
-    where = [all(part in text for part in ("t = ", "cell ", " = ")) for text in failing["told"]]
-    what = ["must" in text and " = " in text for text in refused["told"]]
+    where = [all(part in text for part in ("t = ", "cell ", " = ")) for text in failing["message"]]
+    what = ["must" in text and " = " in text for text in refused["message"]]
     survived = table["verdict"].str.startswith(SURVIVES).sum()
     return quality_check(
         name="each failing model says where",
@@ -261,10 +262,15 @@ def _not_negative(table: pd.DataFrame) -> Claim:
         name="R >= 0",
         statement="R stays >= 0 in both models.",
         verdict=_word(len(negative) == 0),
-        evidence=f"{automaton} runs of the automaton and {len(negative) - automaton} of BCRE have "
-        f"R < 0 somewhere{most}{scene}. The automaton's bounds keep its weights >= 0; BCRE's "
-        "differences of high order undershoot ahead of a scarp that a cell cannot resolve, and "
-        "exchange nothing there",
+        evidence=sentences(
+            f"{automaton} runs of the automaton and {len(negative) - automaton} of BCRE have R < 0 "
+            f"somewhere{most}{scene}",
+            when(
+                len(negative) > automaton,
+                "BCRE's differences of high order undershoot ahead of a scarp that a cell cannot "
+                "resolve, and exchange nothing there",
+            ),
+        ),
         tolerance="1e-12 of the largest R: rounding",
     )
 

@@ -40,6 +40,7 @@ from bcre_pde.explicit import ExplicitMethod
 from bcre_studies.comparison.claim import Claim, quality_check
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.comparison.wording import sentences, when
 from bcre_studies.models.registry import AUTOMATON, BCRE, MODELS, Look
 from bcre_studies.reporting import style
 from bcre_studies.sweeps.parallel import each
@@ -300,7 +301,7 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     dop853 = table["variant"] == "DOP853"
     automaton = table["model"] == AUTOMATON.name
     return [
-        _predicted("the automaton's rules", table[automaton & ~limited], LINEAR),
+        _predicted("the automaton's rules", table[automaton & ~limited], ""),
         _predicted("the flux-limited rule", table[limited], LIMITED),
         _predicted("BCRE by runge-kutta and RK45", table[~automaton & ~dop853], EXPLICIT, True),
         _predicted("BCRE by DOP853", table[dop853], DOP853, True),
@@ -309,20 +310,19 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     ]
 
 
-LINEAR = "The rules are linear in small waves, and so is the prediction."
 LIMITED = (
     "The prediction is that of a limiter that passes every difference or none. What it does to "
     "noise lies between; beyond v dt/d = 1 with much diffusion, where no step may be taken "
-    "anyway, this keeps noise calm that either limiter alone would let grow."
+    "anyway, this keeps noise calm that either limiter alone would let grow"
 )
 EXPLICIT = (
     "Fehlberg's method lets smooth waves of 10 to 50 cells grow from v dt/dx = 1.44 on, but by "
-    "less than 1e-4 a step up to 1.51, too slowly to be seen in the steps taken."
+    "less than 1e-4 a step up to 1.51, too slowly to be seen in the steps taken"
 )
 DOP853 = (
     "What the limiter of the differences does changes between its twelve stages, so that the step "
     "is no polynomial of the spectrum; SciPy's error control, not this boundary, keeps its steps "
-    "short."
+    "short"
 )
 
 
@@ -335,10 +335,13 @@ def _predicted(what: str, rows: pd.DataFrame, why: str, quality: bool = False) -
         statement=f"Of {what} no step predicted stable lets noise grow, and the boundary lies "
         f"within {GOAL:.0%} of the predicted one.",
         verdict=Verdict.AGREE if good else Verdict.DISAGREE,
-        evidence=f"{wrong} of {rows['points'].sum()} points are predicted stable but grow; the "
-        f"boundary is at most {farthest:g} % away ({worst['variant']}, {worst['plane']}), and "
-        f"{rows['distance_visible_percent'].max():g} % from where growth by 10 in the steps taken "
-        f"is predicted. {why}",
+        evidence=sentences(
+            f"{wrong} of {rows['points'].sum()} points are predicted stable but grow; the "
+            f"boundary is at most {farthest:g} % away ({worst['variant']}, {worst['plane']}), and "
+            f"{rows['distance_visible_percent'].max():g} % from where growth by 10 in the steps "
+            "taken is predicted",
+            when(not good, why),
+        ),
         tolerance=WHY,
         quality=quality,
     )
