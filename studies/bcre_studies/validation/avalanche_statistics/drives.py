@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 import bcre_pde
-from bcre_ca import MARGIN, Rule
-from bcre_ca.line import kernels
+from bcre_ca import MARGIN, Pile, Rule
+from bcre_ca.line.settling import settled
 from bcre_studies.observables.outcome import slope
 from bcre_studies.scenes.domain import Array
 
@@ -31,9 +31,6 @@ STILL = 1e-9
 
 LOOKS = 8
 """How often rest is looked for while sand drifts once down the slope."""
-
-MOST_BLOCKS = 10**6
-"""Blocks of steps between two looks; never reached."""
 
 WIDTH = 2.0
 """Of the Gaussian trigger that both models are given; the other one is a single cell's."""
@@ -140,12 +137,8 @@ class _Automaton:
         self.x = (np.arange(cells) + 0.5) * length / cells
 
     def __call__(self, h: Array, R: Array) -> tuple[Array, float, float]:
-        h, R, left, looks = h.copy(), R.copy(), 0.0, 0
-        while R.max() > STILL:
-            done = kernels.follow(h, R, self._rule, self._between, MOST_BLOCKS, MARGIN, "open")
-            left += done.outflow * self._rule.d
-            looks += 1
-        return h, left, looks * self._between
+        end = settled(Pile(h, R), self._rule, STILL, self._between)
+        return end.h, end.outflow, end.t
 
 
 class _Bcre:
