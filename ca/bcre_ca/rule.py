@@ -23,7 +23,7 @@ from bcre_ca.coefficients import (
 Sign = Literal["consistent", "printed"]
 Order = Literal["synchronous", "right", "left"]
 Scheme = Literal["upwind", "calibrated", "limited"]
-Ends = Literal["open", "periodic"]
+Ends = Literal["open", "wall", "periodic"]
 
 ROUNDING = 1e-12
 """Relative slack with which a step counts as equal to its bound."""

@@ -105,3 +105,28 @@ def _jacobian_pattern(cells: int) -> sparse.csc_array:
     offsets = [*range(-3, 4), *range(cells - 3, cells), *range(1 - cells, 4 - cells)]
     near = sparse.diags_array([np.ones(cells - abs(offset)) for offset in offsets], offsets=offsets)
     return sparse.kron(np.ones((3, 3)), near, format="csc")
+
+
+def advance_with_noise(
+    equation: Marched, state: FieldCollection, span: tuple[float, float], dt: float
+) -> FieldCollection:
+    """The state at the end of ``span``, by Euler-Maruyama steps that divide it, about ``dt`` long.
+
+    Raises
+    ------
+    SolveError
+        where the state is no longer finite.
+    """
+    steps = max(math.ceil((span[1] - span[0]) / dt), 1)
+    end: FieldCollection = equation.solve(
+        state,
+        span,
+        dt=(span[1] - span[0]) / steps,
+        tracker=None,
+        solver="euler",
+        adaptive=False,
+        backend="numpy",
+    )
+    if not np.isfinite(end.data).all():
+        raise SolveError(f"euler: the surface outgrew all numbers with dt = {dt!r}", span[1])
+    return end

@@ -32,30 +32,34 @@ class BCRE(MarchedOnLine):
     """BCRE on a line, for py-pde's solvers; the parameters are those of ``MarchedOnLine``."""
 
     def __init__(
-        self, material: Material, grid: CartesianGrid, most_evaluations: float = math.inf
+        self,
+        material: Material,
+        grid: CartesianGrid,
+        most_evaluations: float = math.inf,
+        walled: bool = False,
     ) -> None:
-        super().__init__(material, grid, most_evaluations)
-        self._scratch = np.empty((2, self.cells + 2 * GHOSTS)), np.empty((2, self.cells + 1))
-        self._coefficients = coefficients(material, self.dx, self.periodic)
+        super().__init__(material, grid, most_evaluations, walled)
+        rows = 3 if material.Gamma else 2
+        self._scratch = np.empty((rows, self.cells + 2 * GHOSTS)), np.empty((rows, self.cells + 1))
+        self._coefficients = coefficients(material, self.dx, self.periodic, self.walled)
 
     def rate(self, layers: Array, out: Array) -> None:
         """Write the time derivative of the rows u, R and ends, shape (3, N), into ``out``."""
-        fluxes.rate(layers, out, *self._scratch, *self._coefficients)
+        fluxes.rate(layers, out, *self._scratch, *self._coefficients, self.supply)
 
     def largest_explicit_step(self, largest_R: float) -> float:
         """:func:`bcre_pde.theory.largest_explicit_step` on this grid."""
         return theory.largest_explicit_step(self.material, self.dx, largest_R)
 
 
-Coefficients = tuple[float, float | None, float, float | None, float, bool, float | None]
+def coefficients(
+    material: Material, dx: float, periodic: bool, walled: bool = False
+) -> fluxes.Coefficients:
+    """A material on a grid as :mod:`bcre_pde.line.fluxes` takes it.
 
-
-def coefficients(material: Material, dx: float, periodic: bool) -> Coefficients:
-    """v, D, gamma, kappa, dx, periodic and gamma/v_up for :mod:`bcre_pde.line.fluxes`.
-
-    A D or kappa of zero is None, so that the term is not in the compiled code.
+    A term of zero is None, so that it is not in the compiled code.
     """
-    return (
+    return fluxes.Coefficients(
         material.v,
         material.D or None,
         material.gamma,
@@ -63,4 +67,6 @@ def coefficients(material: Material, dx: float, periodic: bool) -> Coefficients:
         dx,
         periodic,
         material.saturation,
+        material.Gamma or None,
+        material.Sc if walled else None,
     )

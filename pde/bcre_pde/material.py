@@ -20,6 +20,8 @@ class Material:
     v_up: largest speed of the climbing wave, length/time, > 0: for thick flows, in which only the
         grains next to the static layer exchange, gamma R becomes gamma R/(1 + gamma R/v_up)
         (Boutreux, Raphaël and de Gennes 1998). Infinite, the default, is the linear law.
+    Gamma: velocity gradient of a thick rolling layer, 1/time, >= 0: it carries v R + Gamma R^2/2
+        (see :mod:`bcre_pde.line.aradian`).
 
     Raises
     ------
@@ -33,6 +35,7 @@ class Material:
     Sc: float
     kappa: float = 0.0
     v_up: float = math.inf
+    Gamma: float = 0.0
 
     @property
     def saturation(self) -> float | None:
@@ -40,7 +43,7 @@ class Material:
         return None if math.isinf(self.v_up) else self.gamma / self.v_up
 
     def __post_init__(self) -> None:
-        for name in ("v", "D", "gamma", "Sc", "kappa"):
+        for name in ("v", "D", "gamma", "Sc", "kappa", "Gamma"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value >= 0):
                 raise ValueError(f"{name} = {value!r}: must be a finite number >= 0")

@@ -5,18 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bcre_pde.material import Material
+from bcre_pde.source import Source, require_on_line
 
 if TYPE_CHECKING:
     from pde import FieldCollection, MemoryStorage
 
 Array = NDArray[np.float64]
-Ends = Literal["open", "periodic"]
+Ends = Literal["open", "wall", "periodic"]
 Method = Literal["runge-kutta", "RK45", "DOP853", "LSODA", "BDF"]
 
 SMALLEST_GRID = 8
@@ -30,9 +31,11 @@ class Problem:
     Parameters
     ----------
     initial: function of positions x, shape (N,), that returns h and R there, lengths.
-    material: the coefficients.
+    material: the coefficients; of a further model its own, which have an Sc.
     length: the domain is 0 <= x <= length, x running downhill; finite, > 0.
-    ends: ``"open"`` (closed top, open foot) or ``"periodic"`` (in h + Sc x and R).
+    ends: ``"open"`` (closed top, open foot), ``"wall"`` (closed top, a wall at the foot) or
+        ``"periodic"`` (in h + Sc x and R).
+    sources: sand that is poured on the way.
 
     Raises
     ------
@@ -41,15 +44,17 @@ class Problem:
     """
 
     initial: Callable[[Array], tuple[Array, Array]]
-    material: Material
+    material: Material | Any
     length: float
     ends: Ends = "open"
+    sources: tuple[Source, ...] = ()
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.length) and self.length > 0):
             raise ValueError(f"length = {self.length!r}: must be a finite number > 0")
         if self.ends not in get_args(Ends):
             raise ValueError(f"ends = {self.ends!r}: must be one of {get_args(Ends)}")
+        require_on_line(self.sources, self.length)
 
 
 @dataclass(frozen=True)
@@ -57,7 +62,7 @@ class Solution:
     """Layers at the cell centres ``x`` (N,) and times ``t`` (T,): ``h``, ``R`` of shape (T, N).
 
     ``outflow`` (T,) is the area that has left through the foot, so that
-    ``dx sum(h + R) + outflow`` does not change; ``evaluations`` counts right-hand sides.
+    ``dx sum(h + R) + outflow - inflow`` does not change; ``evaluations`` counts right-hand sides.
     ``step_error`` is the sum of the largest local errors of all steps in time, each relative to the
     thickest layer then: times the layer at the end, it bounds what the steps add to the mean errors
     of R and of h. It is not a number for SciPy's methods, which do not tell theirs.
@@ -78,6 +83,11 @@ class Solution:
     def dx(self) -> float:
         """Cell length."""
         return self.problem.length / self.x.size
+
+    @property
+    def inflow(self) -> Array:
+        """Area that the sources have poured by every time, shape (T,)."""
+        return np.array([math.fsum(s.poured(t) for s in self.problem.sources) for t in self.t])
 
     @property
     def u(self) -> Array:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import itertools
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
 from bcre_pde.problem import SMALLEST_GRID, Array, Method, Problem, Solution
+from bcre_pde.source import Source
 
 if TYPE_CHECKING:
     from pde import CartesianGrid, FieldCollection
@@ -69,17 +70,22 @@ def solve(
 
     model = BCRE if equation is None else equation
     grid = model.grid(problem.length, cells, problem.ends)
-    marched = model(problem.material, grid, MOST_EVALUATIONS)
+    marched = model(problem.material, grid, MOST_EVALUATIONS, problem.ends == "wall")
     state = _initial_state(problem, marched, grid)
     record = _Recorder(problem, grid)
+    if problem.sources:
+        marched.pour(problem.sources)
     marched.evolution_rate(state)  # compiles, so that the clock sees the solve alone
     began = time.perf_counter()
     now = 0.0
     for then in times:
         if then > now:
             counted = marched.evaluations
-            state, steps = advance(marched, state, (now, then), method, tolerance)
-            record.steps += steps
+            for span in _between_changes(problem.sources, now, then):
+                if problem.sources:
+                    marched.pour([s for s in problem.sources if s.start <= span[0] < s.until])
+                state, steps = advance(marched, state, span, method, tolerance)
+                record.steps += steps
             record.evaluations += marched.evaluations - counted
             record.step_error = marched.step_error
             now = then
@@ -87,6 +93,14 @@ def solve(
         if stop is not None and stop(record.solution(ends_only=True)):
             break
     return record.solution()
+
+
+def _between_changes(
+    sources: Sequence[Source], now: float, then: float
+) -> Iterator[tuple[float, float]]:
+    """The stretches of time in which no source begins or ends."""
+    changes = {t for source in sources for t in (source.start, source.until) if now < t < then}
+    return itertools.pairwise([now, *sorted(changes), then])
 
 
 class _Recorder:

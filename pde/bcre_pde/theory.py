@@ -1,4 +1,4 @@
-r"""Closed forms of BCRE: frozen slopes, small waves, the scarp, and the stability of steps.
+r"""Closed forms of BCRE: frozen slopes, small waves, and the stability of steps.
 
 On a frozen slope S the rolling layer obeys R_t + v R_x = D R_xx + sigma R, sigma = gamma (S - Sc),
 and a point release of area M is
@@ -66,19 +66,6 @@ def surface_mode_rate(gamma: float, kappa: float, R0: float, wavenumber: float) 
     The mode climbs at gamma R0; only kappa makes it decay.
     """
     return complex(-kappa * R0 * wavenumber**2, gamma * R0 * wavenumber)
-
-
-def scarp_speed(v: float, gamma: float, H: float) -> float:
-    """c = gamma H - v: climb of a sharp scarp, H the jump of u across it.
-
-    Ahead of the scarp R = 0, behind it R* and u lower by H. Mass: the eroded c H equals the growth
-    c R* of the rolling layer plus what it carries away, v R*; the climb is c = gamma R*. So
-    R* = H - v/gamma.
-
-    >>> scarp_speed(v=1.0, gamma=0.5, H=10.0)
-    4.0
-    """
-    return gamma * H - v
 
 
 def spectrum(
@@ -176,12 +163,13 @@ def largest_explicit_step(material: Material, dx: float, largest_R: float) -> fl
     """Step at which an explicit Runge-Kutta method of order 4 is still stable on a line.
 
     On the negative real axis the spectra of the stencils reach 32/15 for the drift v/dx and the
-    climb gamma R/dx, 272/45 for the spreads D/dx^2 and kappa R/dx^2, and the method 2.78.
+    climb gamma R/dx, 272/45 for the spreads D/dx^2 and kappa R/dx^2, and the method 2.78. A thick
+    layer drifts at dJ/dR = v + Gamma R.
     """
     from bcre_pde.exchange import exchanging  # late: slow to import
 
     wet = exchanging.py_func(largest_R, material.saturation)
-    drift = max(material.v, material.gamma * wet)
+    drift = max(material.v + material.Gamma * max(largest_R, 0.0), material.gamma * wet)
     spread = max(material.D, material.kappa * wet)
     rate = 32 / 15 * drift / dx + 272 / 45 * spread / dx**2
     return 2.78 / rate if rate > 0 else math.inf

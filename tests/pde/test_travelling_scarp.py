@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bcre_pde import Material, solve, theory
+from bcre_pde import Material, solve
 from bcre_pde.travelling_scarp import travelling_scarp
 
 CASES = [Material(0.5, 0.5, 0.5, 0.5), Material(0.3, 0.2, 0.3, 0.5, v_up=0.4)]
@@ -44,8 +44,7 @@ def test_linear_law_climbs_at_the_speed_of_mass_balance(v, D, gamma, H):
         with pytest.raises(ValueError, match="gamma H > v"):
             layers(material, H)
     else:
-        expected = 10.0 / theory.scarp_speed(v, gamma, H)
-        assert layers(material, H).until == pytest.approx(expected, rel=1e-6)
+        assert layers(material, H).until == pytest.approx(10.0 / (gamma * H - v), rel=1e-6)
 
 
 def test_bcre_converges_to_it():

@@ -7,9 +7,9 @@ import pandas as pd
 import pytest
 
 import bcre_ca.theory
-import bcre_pde
-import bcre_pde.theory
+from bcre_pde import simple_wave
 from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.models.bcre import problem_of
 from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE
 from bcre_studies.observables import fronts
 from bcre_studies.scenes.scene import load
@@ -72,7 +72,8 @@ def test_the_automatons_scarp_is_as_fast_as_that_of_bcre_with_its_own_coefficien
     )
     times = np.arange(0.0, 271.0, 2.0)
     own = EFFECTIVE.run(scene, times, 140)
-    speed, law = fronts.scarp_speed(own, 45.0), bcre_pde.theory.scarp_speed(0.12, 0.01, 45.0)
+    speed = fronts.scarp_speed(own, 45.0)
+    law = simple_wave.scarp_speed(problem_of(scene).material, 45.0)
     assert fronts.scarp_speed(AUTOMATON.run(scene, times), 45.0) == pytest.approx(speed, rel=0.03)
     assert 0.6 * law < speed < 0.9 * law
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from pde import CartesianGrid, FieldCollection, ScalarField
 
 from bcre_pde.marched import Marched
 from bcre_pde.problem import SMALLEST_GRID, Array, Ends
+from bcre_pde.source import Source
 
 
 class MarchedOnLine(Marched):
@@ -24,10 +26,15 @@ class MarchedOnLine(Marched):
     material: the coefficients of the model.
     grid: a line of N >= 8 cells from x = 0, periodic or not.
     most_evaluations: how often the right-hand side may be evaluated.
+    walled: whether a wall stands at the foot.
     """
 
     def __init__(
-        self, material: Any, grid: CartesianGrid, most_evaluations: float = math.inf
+        self,
+        material: Any,
+        grid: CartesianGrid,
+        most_evaluations: float = math.inf,
+        walled: bool = False,
     ) -> None:
         (cells,) = grid.shape
         if cells < SMALLEST_GRID:
@@ -37,6 +44,8 @@ class MarchedOnLine(Marched):
         self.cells = cells
         self.dx = float(grid.discretization[0])
         self.periodic = bool(grid.periodic[0])
+        self.walled = walled
+        self.supply: Array | None = None
 
     @staticmethod
     def grid(length: float, cells: int, ends: Ends) -> CartesianGrid:
@@ -50,6 +59,11 @@ class MarchedOnLine(Marched):
         ends[0] = u_foot
         rows = {"u": u, "R": R, "ends": ends}
         return FieldCollection([ScalarField(grid, row, label=name) for name, row in rows.items()])
+
+    def pour(self, sources: Sequence[Source]) -> None:
+        """Let these sources fall from now on: ``supply`` holds what each cell gets of them."""
+        edges = self.dx * np.arange(self.cells + 1)
+        self.supply = sum((source.over(edges) for source in sources), np.zeros(self.cells))
 
     def place(self, cell: int) -> str:
         """Its x."""

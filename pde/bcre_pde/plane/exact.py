@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bcre_pde import exact as line
+from bcre_pde import simple_wave
 from bcre_pde.plane import theory
 from bcre_pde.plane.material import Material
 from bcre_pde.plane.problem import Problem, Sides
@@ -111,7 +112,7 @@ def oblique_climbing_wave(
     r"""R = R0(x - a sin(2 pi y/width) + gamma R t), D_x = D_y = kappa = 0.
 
     Where nothing spreads across, every column is a line of its own, and the climbing wave of
-    :func:`bcre_pde.exact.climbing_wave` an exact nonlinear solution there, wherever it stands: here
+    :mod:`bcre_pde.simple_wave` an exact nonlinear solution there, wherever it stands: here
     its crest swings along x by ``swing`` (a) across the plane.
     """
     width_of_hump, Sc = 1.5, 0.5
@@ -121,7 +122,7 @@ def oblique_climbing_wave(
         moved = (x - swing * np.sin(2 * math.pi * y / width)) % length
         _, R = hump.layers(moved.ravel(), t)
         R = R.reshape(x.shape)
-        return line.climbing_wave_surface(x, R, v, gamma, Sc), R
+        return simple_wave.surface(hump.material, x, R), R
 
     return ExactSolution(
         "oblique climbing wave",

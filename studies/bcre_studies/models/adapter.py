@@ -32,6 +32,25 @@ class Adapter(ABC):
     refined = False
     """Whether :meth:`measured` refines a grid, so that what it returns has an error."""
 
+    ends: tuple[str, ...] = ("open", "wall", "periodic")
+    """The ends that the model admits."""
+
+    admits: tuple[str, ...] = ("source", "Gamma")
+    """What else of a scene it admits that not all models do."""
+
+    def require_admitted(self, scene: Scene) -> None:
+        """Raise :class:`SceneError` where the scene asks for what the model does not have."""
+        if scene.domain.ends not in self.ends:
+            raise SceneError(
+                f"domain.ends = {scene.domain.ends!r}: must be one of {self.ends} in this model"
+            )
+        if scene.source and "source" not in self.admits:
+            raise SceneError(
+                f"source: {len(scene.source)} given; must be none, this model has no sources"
+            )
+        if scene.material.Gamma and "Gamma" not in self.admits:
+            raise SceneError(f"material.Gamma = {scene.material.Gamma!r}: must be 0 in this model")
+
     @abstractmethod
     def run(
         self,
@@ -105,10 +124,17 @@ def noise_bytes(scene: Scene) -> int:
 
 
 def thickest_layer(scene: Scene) -> float:
-    """What R may come to: R0 e^(gamma (S - Sc) t), but no more than what lies above repose."""
+    """What R may come to: R0 e^(gamma (S - Sc) t), but no more than what lies above repose.
+
+    A source adds what it pours while the layer drifts past it, or all of it where nothing drifts.
+    """
     x = scene.centres()
     h, R = scene.initial(x)
     u, thickest = h + scene.material.Sc * x, float(R.max())
+    for source in scene.source:
+        span = max(min(scene.time.until, source.until) - source.start, 0.0)
+        passing = source.width / scene.material.v if scene.material.v > 0 else span
+        thickest += source.rate / source.width * min(span, passing)
     if x.size < 2:
         return thickest
     excess = max(float(-np.diff(u).min() / scene.d), 0.0)

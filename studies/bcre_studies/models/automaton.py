@@ -22,6 +22,9 @@ MOST_STEPS = 10**9
 class Automaton(Adapter):
     """The automaton as the scene describes it; given a ``scheme``, that with its largest step."""
 
+    ends = ("open", "periodic")
+    admits = ()
+
     def __init__(self, scheme: str = "") -> None:
         self._scheme = scheme
 

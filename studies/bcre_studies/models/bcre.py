@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import bcre_pde
+from bcre_pde.source import Source
 from bcre_studies.models.adapter import (
     Adapter,
     Stop,
@@ -19,6 +20,9 @@ from bcre_studies.models.adapter import (
 from bcre_studies.models.run import Run
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, SceneError
+
+if TYPE_CHECKING:
+    from bcre_pde.line.marched import MarchedOnLine
 
 SHARE = 0.1
 """BCRE's own error may be this part of the difference that is reported."""
@@ -40,12 +44,25 @@ WORK_BYTES = {"runge-kutta": 200, "RK45": 800, "DOP853": 1300, "LSODA": 800, "BD
 
 
 class Bcre(Adapter):
-    """BCRE with the scene's own coefficients, or with those of ``of(scene)``."""
+    """BCRE with the scene's own coefficients, or with those of ``of(scene)``.
+
+    A further model on py-pde has its own :attr:`equation` and :meth:`problem`.
+    """
 
     refined = True
+    equation: type[MarchedOnLine] | None = None
+    """What :func:`bcre_pde.solve` solves; None is BCRE."""
 
     def __init__(self, of: Callable[[Scene], Scene] | None = None) -> None:
         self._of = of or (lambda scene: scene)
+
+    def problem(self, scene: Scene) -> bcre_pde.Problem:
+        """The scene as an initial value problem of this model."""
+        return problem_of(self._of(scene))
+
+    def _options(self, scene: Scene, stop: Stop | None) -> dict[str, Any]:
+        options = solver_options(scene, stop)
+        return options if self.equation is None else options | {"equation": self.equation}
 
     def on(self, scene: Scene, cells: int) -> Scene:
         return scene.with_changes(**{"solver.cells": cells})
@@ -68,8 +85,7 @@ class Bcre(Adapter):
         """
         if cells is not None:
             scene.require_held(cells, "solver.cells")
-        problem = problem_of(self._of(scene))
-        options = solver_options(scene, stop)
+        problem, options = self.problem(scene), self._options(scene, stop)
         return run_of(scene, bcre_pde.solve(problem, times, cells or finest(scene), **options))
 
     def answer(
@@ -118,7 +134,7 @@ class Bcre(Adapter):
         bcre_pde.SolveError
             where the solver gives up.
         """
-        problem, options = problem_of(self._of(scene)), solver_options(scene, stop)
+        problem, options = self.problem(scene), self._options(scene, stop)
 
         def on_solution(solution: bcre_pde.Solution) -> Sequence[Any]:
             return measure(run_of(scene, solution))
@@ -156,9 +172,19 @@ def problem_of(scene: Scene) -> bcre_pde.Problem:
             Sc=material.Sc,
             kappa=material.kappa,
             v_up=math.inf if material.v_up is None else material.v_up,
+            Gamma=material.Gamma,
         ),
         length=scene.domain.length,
         ends=scene.domain.ends,
+        sources=sources_of(scene),
+    )
+
+
+def sources_of(scene: Scene) -> tuple[Source, ...]:
+    """The scene's sources as ``bcre_pde`` takes them."""
+    return tuple(
+        Source(source.rate, source.place, source.width, source.start, source.until)
+        for source in scene.source
     )
 
 

@@ -20,6 +20,9 @@ from bcre_studies.scenes.scene import Scene
 class HeightOnly(Adapter):
     """The one-variable control; it needs no more than :meth:`run`."""
 
+    ends = ("open", "periodic")
+    admits = ()
+
     def run(
         self,
         scene: Scene,

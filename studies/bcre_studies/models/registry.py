@@ -48,7 +48,9 @@ class Model:
         stop: Stop | None = None,
     ) -> Run:
         """See :meth:`bcre_studies.models.adapter.Adapter.run`."""
-        return replace(self.adapter().run(scene, times, cells, stop), model=self.name)
+        adapter = self.adapter()
+        adapter.require_admitted(scene)
+        return replace(adapter.run(scene, times, cells, stop), model=self.name)
 
     def answer(
         self, scene: Scene, times: Sequence[float], earlier: Sequence[Run], stop: Stop
@@ -106,6 +108,31 @@ def _height_only() -> Adapter:
     return HeightOnly()
 
 
+def _aradian() -> Adapter:
+    from bcre_studies.models.aradian import thick_flow
+    from bcre_studies.models.bcre import Bcre
+
+    return Bcre(thick_flow)
+
+
+def _hadeler_kuttler() -> Adapter:
+    from bcre_studies.models.hadeler_kuttler import HadelerKuttler
+
+    return HadelerKuttler()
+
+
+def _hwa_kardar() -> Adapter:
+    from bcre_studies.models.hwa_kardar import HwaKardar
+
+    return HwaKardar()
+
+
+def _quasi_static() -> Adapter:
+    from bcre_studies.models.quasi_static import QuasiStatic
+
+    return QuasiStatic()
+
+
 AUTOMATON = Model("ca", _automaton, "automaton", "automaton", "#b5480f", "o")
 BCRE = Model("pde", _bcre, "BCRE (PDE)", "pde", "#1f5a99", "s", (0, (5, 2)))
 EFFECTIVE = Model(
@@ -128,9 +155,30 @@ SCHEMES = {
 }
 """The automaton in one scheme, with the largest stable step."""
 
-HEIGHT_ONLY = Model("height", _height_only, "height alone", "one_variable", "k", "D")
+HEIGHT_ONLY = Model("height alone", _height_only, "height alone", "one_variable", "k", "D")
 
-MODELS = {model.name: model for model in (AUTOMATON, BCRE, EFFECTIVE, HEIGHT_ONLY)}
+ARADIAN = Model("aradian", _aradian, "Aradian et al.", "aradian", "#7a4fa3", "p")
+HADELER_KUTTLER = Model(
+    "hadeler-kuttler", _hadeler_kuttler, "Hadeler-Kuttler", "hadeler_kuttler", "#a8324a", "X"
+)
+HWA_KARDAR = Model("hwa-kardar", _hwa_kardar, "Hwa-Kardar", "hwa_kardar", "#6b6b6b", "v")
+QUASI_STATIC = Model(
+    "quasi-static", _quasi_static, "Prigozhin-Zaltzman", "quasi_static", "#0f7f8c", "P"
+)
+
+MODELS = {
+    model.name: model
+    for model in (
+        AUTOMATON,
+        BCRE,
+        EFFECTIVE,
+        HEIGHT_ONLY,
+        ARADIAN,
+        HADELER_KUTTLER,
+        HWA_KARDAR,
+        QUASI_STATIC,
+    )
+}
 
 COMPARED = (AUTOMATON, BCRE, EFFECTIVE)
 """The columns of every comparison."""

@@ -70,11 +70,18 @@ class Run:
         rows = zip(self.h, self.R, strict=True)
         return np.array([self.d * (math.fsum(h) + math.fsum(R)) for h, R in rows])
 
+    def inflow(self) -> Array:
+        """Area that sources have poured since the first frame, at every time."""
+        return np.array([self.scene.poured(t) for t in self.t]) - self.scene.poured(self.t[0])
+
     def mass_error(self) -> float:
-        """|mass + outflow - initial mass| at the end, over the area of |h| + R at the start."""
-        mass = self.mass()
-        scale = self.d * float(np.sum(np.abs(self.h[0]) + self.R[0]))
-        balance = abs(mass[-1] + self.outflow[-1] - mass[0])
+        """|mass + outflow - inflow - initial mass| at the end, relative.
+
+        To the area of |h| + R at the start and of the inflow.
+        """
+        mass, poured = self.mass(), float(self.inflow()[-1])
+        scale = self.d * float(np.sum(np.abs(self.h[0]) + self.R[0])) + poured
+        balance = abs(mass[-1] + self.outflow[-1] - poured - mass[0])
         return float(balance / scale) if scale > 0 else float(balance)
 
     def sample(self, x: Array, field: str = "R", frame: int = -1) -> Array:

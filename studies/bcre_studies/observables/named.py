@@ -47,7 +47,7 @@ NAMES = ("slope", "roughness", "front", "eroded", "reach", "top", "R")
 
 def posed(scene: Scene) -> tuple[str, ...]:
     """The observables that the scene poses: without joined ends all of them."""
-    if scene.domain.ends == "open":
+    if scene.domain.ends != "periodic":
         return NAMES
     return tuple(name for name in NAMES if name not in ("front", "reach", "top"))
 

@@ -1,13 +1,8 @@
-"""Frames as one NetCDF file that xarray, QGIS, ParaView and Panoply read.
-
-It is compressed (NetCDF-4, by h5netcdf) where h5py is installed, through which h5netcdf writes;
-without it the file is a classic one, NetCDF-3, of the same content.
-"""
+"""Frames as one compressed NetCDF-4 file that xarray, QGIS, ParaView and Panoply read."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from importlib.util import find_spec
 from io import BytesIO
 
 import numpy as np
@@ -23,11 +18,8 @@ ENCODING = {"zlib": True, "complevel": 4, "shuffle": True}
 def content(runs: Sequence[PlaneRun]) -> bytes:
     """:func:`dataset` as a file."""
     frames, file = dataset(runs), BytesIO()
-    if find_spec("h5py") is None:
-        frames.to_netcdf(file, engine="scipy", format="NETCDF3_64BIT")
-    else:
-        encoding = {name: ENCODING for name in frames.data_vars if frames[name].ndim == 3}
-        frames.to_netcdf(file, engine="h5netcdf", encoding=encoding)
+    encoding = {name: ENCODING for name in frames.data_vars if frames[name].ndim == 3}
+    frames.to_netcdf(file, engine="h5netcdf", encoding=encoding)
     return file.getvalue()
 
 

@@ -64,6 +64,7 @@ def require_runnable(scene: Scene, choice: str, frames: int) -> None:
         needed = sum(adapter.memory(scene, frames) for adapter in adapters)
         memory.require(f"{_grids(scene)} with --frames = {frames}", needed)
         for adapter in adapters:
+            adapter.require_admitted(scene)
             adapter.require_runnable(scene)
 
 
@@ -167,6 +168,7 @@ def summarise(run: Run) -> dict[str, Any]:
         "mass_initial": float(mass[0]),
         "mass_final": float(mass[-1]),
         "outflow": float(run.outflow[-1]),
+        **({"inflow": float(run.inflow()[-1])} if run.scene.source else {}),
         "mass_error": run.mass_error(),
         "R_min": float(run.R.min()),
         "R_max": float(run.R.max()),

@@ -36,11 +36,14 @@ class SceneFile(StrictTable):
 
 
 class Domain(StrictTable):
-    """``[domain]``: 0 <= x <= length; ``cells`` are the automaton's, d = length/cells."""
+    """``[domain]``: 0 <= x <= length; ``cells`` are the automaton's, d = length/cells.
+
+    ``ends`` are a closed top with an open foot or with a wall at the foot, or joined.
+    """
 
     length: Positive
     cells: Annotated[int, Field(ge=1, le=10_000_000)]
-    ends: Literal["open", "periodic"]
+    ends: Literal["open", "wall", "periodic"]
 
     @property
     def d(self) -> float:

@@ -48,7 +48,7 @@ def misplaced(function: PPoly, domain: Domain, cells: int) -> float:
 def _means(function: PPoly, domain: Domain, cells: int) -> Array:
     faces = np.linspace(0.0, domain.length, cells + 1)
     area = function.antiderivative()
-    if domain.ends == "open":
+    if domain.ends != "periodic":
         return np.asarray(np.diff(area(faces)) * cells / domain.length)
     first = function.x[0]
     turns, rest = np.divmod(faces - first, domain.length)

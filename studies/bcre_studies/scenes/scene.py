@@ -7,6 +7,7 @@ refused with a line that names the key, the value and what is allowed.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -17,6 +18,7 @@ from pydantic import Field, ValidationError, model_validator
 from bcre_studies.scenes.domain import Array, Domain, NonNegative, Positive, SceneFile, StrictTable
 from bcre_studies.scenes.refusal import SceneError as SceneError
 from bcre_studies.scenes.refusal import first_of, kinds_of, refuse_long_integers
+from bcre_studies.scenes.source import Source
 from bcre_studies.scenes.tables import ProfileError
 from bcre_studies.scenes.terms import (
     RollingTerm,
@@ -33,7 +35,7 @@ class SceneMaterial(StrictTable):
     """``[material]``: the coefficients of both models.
 
     kappa is BCRE's curvature term, which the paper's rule does not have and the calibrated and the
-    limited one take over; ``v_up`` makes the exchange that of thick flows.
+    limited one take over; ``v_up`` makes the exchange, and ``Gamma`` the flux, that of thick flows.
     """
 
     v: NonNegative
@@ -42,6 +44,7 @@ class SceneMaterial(StrictTable):
     Sc: NonNegative
     kappa: NonNegative = 0.0
     v_up: Positive | None = None
+    Gamma: NonNegative = 0.0
 
 
 class Automaton(StrictTable):
@@ -75,12 +78,20 @@ class Scene(SceneFile):
     time: Time
     surface: tuple[SurfaceTerm, ...] = ()
     rolling: tuple[RollingTerm, ...] = ()
+    source: tuple[Source, ...] = ()
     automaton: Automaton = Automaton()
     solver: Solver = Solver()
 
     @model_validator(mode="after")
+    def _sources_lie_on_the_line(self) -> Self:
+        for index, source in enumerate(self.source):
+            if why := source.beyond(self.domain):
+                raise ValueError(f"source.{index}.{why}")
+        return self
+
+    @model_validator(mode="after")
     def _fits_periodic_ends(self) -> Self:
-        if self.domain.ends == "open":
+        if self.domain.ends != "periodic":
             return self
         for index, term in enumerate(self.surface):
             if not isinstance(term, Sine):
@@ -139,6 +150,10 @@ class Scene(SceneFile):
         for rolling in self.rolling:
             R += rolling.layer(x, self.domain)
         return h, R
+
+    def poured(self, t: float) -> float:
+        """Area that the sources have poured by the time t."""
+        return math.fsum(source.poured(t) for source in self.source)
 
     def tables(self) -> list[Path]:
         """The CSV files that its profiles come from."""

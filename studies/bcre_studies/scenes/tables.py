@@ -84,7 +84,7 @@ def _rows(path: Path, refuse: Callable[[str], ProfileError]) -> tuple[list[str],
 def profile(what: str, x: Array, values: Array, domain: Domain) -> PPoly:
     """The function through the table, closed over the period where ends are periodic."""
     length = domain.length
-    if domain.ends == "open":
+    if domain.ends != "periodic":
         return through(x, values, (0.0, length))
     inside = x < x[0] + length * (1 - 1e-9)
     places, closing = x[inside], values[inside]

@@ -23,7 +23,7 @@ import numpy as np
 import pandas as pd
 
 import bcre_pde
-from bcre_pde import exact
+from bcre_pde import exact, simple_wave
 from bcre_pde.solve import TOLERANCE
 from bcre_pde.travelling_scarp import travelling_scarp
 from bcre_studies.comparison.claim import Claim, quality_check
@@ -82,7 +82,7 @@ class Case(NamedTuple):
 def cases() -> tuple[Case, ...]:
     """All of them."""
     hump = exact.climbing_hump(v=1.0, gamma=0.5, height=0.3, width=1.5, length=20.0, until=2.0)
-    breaking = exact.breaking_time(0.3 / 1.5 * float(np.sqrt(2 / np.e)), 0.5)
+    breaking = simple_wave.breaking_time(0.5 * 0.3 / 1.5 * float(np.sqrt(2 / np.e)))
     smooth = (
         exact.rolling_mode(wavenumber=0.5, v=1.0, D=0.1),
         exact.frozen_slope_release(excess=0.6, v=1.0, D=0.3, gamma=0.2),

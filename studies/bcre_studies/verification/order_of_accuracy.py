@@ -26,7 +26,7 @@ import pandas as pd
 import bcre_ca
 import bcre_pde
 from bcre_ca.rule import Scheme
-from bcre_pde import Method, exact
+from bcre_pde import Method, exact, simple_wave
 from bcre_pde.solve import TOLERANCE
 from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.rounding import significant
@@ -292,7 +292,7 @@ def _past_breaking(model: str) -> list[dict[str, Any]]:
     x = np.linspace(0.5, 19.5, 400)
     start = solution.layers(np.linspace(0, 20, 20001), 0.0)[1]
     rise = float(np.gradient(start, 0.001).max())
-    breaking = exact.breaking_time(rise, solution.material.gamma)
+    breaking = simple_wave.breaking_time(solution.material.gamma * rise)
     rows = []
     for part in (1.1, 1.5, 2.0):
         later = replace(solution, until=part * breaking)

@@ -58,9 +58,9 @@ until = 5.0
 flow = "facet8"
 [[source]]
 rate = 1.0
-centre = [6.0, 4.0]
+place = [6.0, 4.0]
 width = 2.0
-stop = 4.0
+until = 4.0
 [[wall]]
 kind = "disc"
 centre = [2.0, 4.0]
@@ -150,9 +150,13 @@ def test_summary_accounts_for_the_mass(bcre, tmp_path):
     ("scene", "options", "message"),
     [
         (HEAP, ["--model", "pde"], "automaton.flow = 'facet8': must be 'tilted' for --model pde"),
-        (SCENE, ["--model", "height"], "--model = 'height': must be 'ca', 'pde' or 'both'"),
+        (
+            SCENE,
+            ["--model", "height alone"],
+            "--model = 'height alone': must be 'ca', 'pde' or 'both'",
+        ),
         (SCENE, ["--set", "step=9.0"], "time.step = 9.0: "),
-        (HEAP, ["--set", "source.0.centre=[50.0, 4.0]"], "sources[0]: no cell that can hold sand"),
+        (HEAP, ["--set", "source.0.place=[50.0, 4.0]"], "sources[0]: no cell that can hold sand"),
         (SCENE, ["--set", "cells_across=90000000"], "domain.width = 8.0: must be that of"),
         (SCENE, ["--set", "until=1e300"], "time.until = 1e+300: would take"),
         (SCENE, ["--set", "surface.0.slope=1e308"], "numbers of this scene are too large"),

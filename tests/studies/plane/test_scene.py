@@ -146,7 +146,7 @@ def test_changed_scene_keeps_its_other_values(tmp_path):
             r"^rolling.0.kind = 'cone': must be one of 'gaussian', 'uniform'",
         ),
         ("wall.0.kind='ring'", r"^wall.0.kind = 'ring': must be one of 'disc', 'box'"),
-        ("source.0.stop=0.5", r"^source.stop = 0.5: must be at least 1.0"),
+        ("source.0.until=0.5", r"^source.until = 0.5: must be at least source.from = 1.0"),
         ("source.0.rate=-1.0", r"^source.0.rate = -1.0: must be greater than or equal to 0"),
         ('ends="periodic"', r"^surface: the inclines add up to 0; with periodic ends"),
     ],
@@ -164,9 +164,9 @@ centre = [3.0, 4.0]
 width = 2.0
 [[source]]
 rate = 1.0
-centre = [6.0, 4.0]
+place = [6.0, 4.0]
 width = 1.0
-start = 1.0
+from = 1.0
 """
     with pytest.raises(SceneError, match=message) as refused:
         scene(tmp_path, text, override)

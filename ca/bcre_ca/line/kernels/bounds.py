@@ -65,9 +65,9 @@ def _largest_bend(h, kappa):  # type: ignore[no-untyped-def]
 def limits(h, R, p, period_drop, foot):  # type: ignore[no-untyped-def]
     """Largest layer and fastest loss per unit of layer, as :func:`largest_step` takes them.
 
-    NaN where the layers are not finite or R is negative. p holds every term. ``foot`` says whether the last cell is
-    that at the open foot, beyond which the surface goes on at repose, rather than one inside the
-    pile.
+    NaN where the layers are not finite or R is negative. p holds every term. ``foot`` says whether
+    the last cell is that at the open foot, beyond which the surface goes on at repose, rather than
+    one inside the pile.
     """
     last, repose_drop = h.size - 1, p.repose_slope * p.d
     largest, shortfall = _extremes(h, R, repose_drop)

@@ -80,7 +80,7 @@ def plane_of(scene: PlaneScene, h: Array) -> Plane:
         walls=walls if walls.any() else None,
         base=None if scene.base is None else h - scene.base.thickness,
         sources=tuple(
-            Source(source.rate, source.centre, source.width, (source.start, source.stop))
+            Source(source.rate, source.place, source.width, (source.start, source.until))
             for source in scene.source
         ),
     )

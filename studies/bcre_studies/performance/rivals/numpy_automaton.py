@@ -9,12 +9,10 @@ operations of :func:`bcre_ca.step`, which it therefore equals to the bit.
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 
 import bcre_ca
-from bcre_pde import Problem
+from bcre_pde import Ends, Problem
 from bcre_studies.performance.rivals.rivals import (
     Array,
     EndState,
@@ -54,7 +52,7 @@ def march(
     R: Array,
     rule: bcre_ca.Rule,
     steps: int,
-    ends: Literal["open", "periodic"] = "open",
+    ends: Ends = "open",
 ) -> None:
     """Take ``steps`` steps in place; h and R of shape (N,), N >= 1.
 
@@ -65,6 +63,8 @@ def march(
     """
     if rule != bcre_ca.Rule(rule.v, rule.D, rule.gamma, rule.Sc, rule.d, rule.dt, rule.sign):
         raise ValueError(f"{rule}: must be the paper's synchronous rule and nothing more")
+    if ends == "wall":
+        raise ValueError(f"ends = {ends!r}: must be 'open' or 'periodic'")
     fold = rule.coefficients()
     b = fold.diffusion or 0.0
     drop = rule.Sc * rule.d * h.size

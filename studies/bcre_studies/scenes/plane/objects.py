@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import math
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
+from pydantic import Field
 
-from bcre_studies.scenes.domain import NonNegative, Positive, StrictTable
+from bcre_studies.scenes.domain import Positive, StrictTable
 from bcre_studies.scenes.plane.domain import Place, Places
+from bcre_studies.scenes.source import Poured
 
 Mask = NDArray[np.bool_]
 
@@ -40,20 +40,10 @@ class Box(StrictTable):
 Wall = Annotated[Disc | Box, Field(discriminator="kind")]
 
 
-class Source(StrictTable):
-    """``[[source]]``: ``rate``, a volume/time, poured over a disc from ``start`` to ``stop``."""
+class Source(Poured):
+    """``[[source]]``: ``rate``, a volume/time, falls evenly on a disc at ``place``."""
 
-    rate: NonNegative
-    centre: Place
-    width: Positive
-    start: NonNegative = 0.0
-    stop: Annotated[float, Field(ge=0)] = math.inf
-
-    @model_validator(mode="after")
-    def _ends_after_it_starts(self) -> Self:
-        if not self.stop >= self.start:
-            raise ValueError(f"source.stop = {self.stop!r}: must be at least {self.start!r}")
-        return self
+    place: Place
 
 
 class Base(StrictTable):

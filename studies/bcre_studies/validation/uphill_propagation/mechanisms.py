@@ -20,9 +20,11 @@ import numpy as np
 
 import bcre_ca
 import bcre_pde
+from bcre_pde import simple_wave
 from bcre_studies.comparison.compare import compare_each
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.models.automaton import rule_of
+from bcre_studies.models.bcre import problem_of
 from bcre_studies.models.run import Run
 from bcre_studies.observables import fronts
 from bcre_studies.scenes.domain import Domain
@@ -121,8 +123,8 @@ def scarp(d: float) -> list[Row]:
         **{"rolling.0.amplitude": 100.0, "rolling.0.centre": 70.0},
     )
     times = [float(t) for t in np.arange(0.0, 281.0, 2.0)]
-    material = scene.material
-    laws = [bcre_pde.theory.scarp_speed(material.v, material.gamma, H) for H in HEIGHTS]
+    material = problem_of(scene).material
+    laws = [simple_wave.scarp_speed(material, H) for H in HEIGHTS]
     results = compare_each(
         scene,
         times,

@@ -22,9 +22,11 @@ import pandas as pd
 
 import bcre_ca.theory
 import bcre_pde.theory
+from bcre_pde import simple_wave
 from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.verdict import Verdict, worst
 from bcre_studies.comparison.wording import sentences, when
+from bcre_studies.models.bcre import problem_of
 from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED
 from bcre_studies.reporting import style
 from bcre_studies.scenes.scene import load
@@ -211,7 +213,7 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
 
 
 def _closed_forms(axis: Axes, quantity: str) -> None:
-    material = load("figure1").material
+    material = problem_of(load("figure1")).material
     v, D, gamma = material.v, material.D, material.gamma
     if quantity == FRONT:
         x = np.linspace(0.9 * EXCESSES[0], 1.03 * EXCESSES[-1], 60)
@@ -226,7 +228,7 @@ def _closed_forms(axis: Axes, quantity: str) -> None:
         lines = list(x)
     else:
         x = np.array([0.9 * HEIGHTS[0], 1.03 * HEIGHTS[-1]])
-        lines = [bcre_pde.theory.scarp_speed(v, gamma, H) for H in x]
+        lines = [simple_wave.scarp_speed(material, H) for H in x]
     axis.plot(x, lines, **BCRE.line)
 
 

@@ -1,7 +1,7 @@
 """Steps that follow their bounds against a fixed step: the same R, each within its own error.
 
-The fixed step is 0.8 of the smallest bound that the run passes. Steps being of first order, the error of
-a run is twice what halving all its steps changes; the two runs may differ by both errors.
+The fixed step is 0.8 of the smallest bound that the run passes. Steps being of first order, the
+error of a run is twice what halving all its steps changes; the two runs may differ by both errors.
 """
 
 from __future__ import annotations
