@@ -12,7 +12,7 @@ from bcre_ca import Rule, evolve
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON
 from bcre_studies.system.files import REPORTS
-from bcre_studies.validation.agreement_map import prediction, rules, study
+from bcre_studies.validation.agreement_map import comparison, prediction, rules, study
 from bcre_studies.validation.agreement_map.measured import FAILED, TOLERANCE, compared, measure
 from bcre_studies.validation.agreement_map.pulses import Pulse, drawn, scene_of
 from bcre_studies.validation.agreement_map.thresholds import (
@@ -134,7 +134,7 @@ def test_the_committed_table_follows_from_the_committed_scenes(tables):
     scenes = tables["scenes"].assign(
         **{name: pd.to_numeric(tables["scenes"][name], errors="coerce") for name in numbers}
     )
-    again = study.compared(scenes, tables["thresholds"])
+    again = comparison.compared(scenes, tables["thresholds"])
     committed = tables["comparison"]
     assert list(again["case"]) == list(committed["case"])
     shown = pd.to_numeric(committed["automaton"])
@@ -144,5 +144,5 @@ def test_the_committed_table_follows_from_the_committed_scenes(tables):
 def test_of_the_committed_scenes_none_was_used_both_to_find_and_to_test_a_rule(tables):
     scenes = tables["scenes"]
     assert len(scenes) == study.FITTED + study.TESTED
-    assert len(scenes[scenes["seed"] == study.TEST_SEED]) >= 500
+    assert len(scenes[scenes["seed"] == comparison.TEST_SEED]) >= 500
     assert not scenes.drop(columns="seed").duplicated().any()

@@ -19,18 +19,12 @@ from bcre_studies.sweeps import parallel
 from bcre_studies.sweeps.sweep import Sweep, run
 from bcre_studies.sweeps.table import read
 from bcre_studies.system.files import replace_file, replace_text
+from bcre_studies.validation.agreement_map import comparison
+from bcre_studies.validation.agreement_map.comparison import FIT_SEED, TEST_SEED
+from bcre_studies.validation.agreement_map.drawing import draw
 from bcre_studies.validation.agreement_map.measured import COLUMNS, FAILED, compared
 from bcre_studies.validation.agreement_map.pulses import Pulse, drawn
-from bcre_studies.validation.agreement_map.study import (
-    FIT_SEED,
-    TEST_SEED,
-    draw,
-    settings,
-    thresholds_of,
-)
-from bcre_studies.validation.agreement_map.study import (
-    compared as comparison_of,
-)
+from bcre_studies.validation.agreement_map.thresholds import settings, thresholds_of
 
 SCENES = 200_000
 FITTED_SHARE = 0.1
@@ -85,7 +79,7 @@ def main(scenes: int, scheduler: str | None, out: Path) -> None:
     found = read(out)
     found["verdict"] = found["verdict"].where(found["failure"] == "", FAILED)
     tables = {
-        "comparison": comparison_of(found, thresholds),
+        "comparison": comparison.compared(found, thresholds),
         "scenes": found,
         "thresholds": thresholds,
     }

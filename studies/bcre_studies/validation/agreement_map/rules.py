@@ -85,11 +85,15 @@ def three_words(scenes: list[tuple[Pulse, str]]) -> Row:
     return _row("verdict is right", "exact moments, which of three words", np.array(right))
 
 
-def missed(rule: Rule, scenes: list[tuple[Pulse, str]]) -> tuple[int, int]:
-    """Scenes that agree though the rule says no, and that do not though it says yes."""
-    agree = np.array([word == Verdict.AGREE for _, word in scenes])
-    said = np.array([rule.agrees(pulse) for pulse, _ in scenes])
-    return int((agree & ~said).sum()), int((said & ~agree).sum())
+def missed(rule: Rule, scenes: list[tuple[Pulse, str]]) -> tuple[list[Pulse], list[Pulse]]:
+    """Pulses that agree though the rule says no, and that do not though it says yes."""
+    too_strict, too_lax = [], []
+    for pulse, word in scenes:
+        if rule.agrees(pulse) and word != Verdict.AGREE:
+            too_lax.append(pulse)
+        if not rule.agrees(pulse) and word == Verdict.AGREE:
+            too_strict.append(pulse)
+    return too_strict, too_lax
 
 
 def _row(quantity: str, case: str, true: Any) -> Row:
