@@ -38,7 +38,7 @@ def _one_number(
 ) -> Claim:
     by_peclet, by_r, *_ = of_rule
     too_strict, too_lax = missed(by_r, tested)
-    growths = [abs(pulse.growth) for pulse in too_lax]
+    changing = sum(abs(pulse.growth) > 1 for pulse in too_lax)
     return _rule_claim(
         "bound on r",
         "One number, r, tells whether the automaton agrees with BCRE.",
@@ -46,8 +46,8 @@ def _one_number(
         f"r = v d (1 - c) t/(w^2/2 + 2 D t) <= {largest_broadening(TOLERANCE):.3f} is right of "
         f"{{share}}; a bound on Pe alone, the best of {fitted} other scenes, of "
         f"{_share(table.loc[('rule is right', by_peclet.name)])}. Beyond the bound on r "
-        f"{len(too_strict)} scenes agree; within it {len(too_lax)} do not, with |G| from "
-        f"{min(growths, default=0.0):.1f} to {max(growths, default=0.0):.1f}",
+        f"{len(too_strict)} scenes agree; within it {len(too_lax)} do not, {changing} of "
+        "which grow or decay by more than e, |G| > 1",
     )
 
 

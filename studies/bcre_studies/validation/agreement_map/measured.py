@@ -21,8 +21,11 @@ from bcre_studies.validation.agreement_map.pulses import Pulse, scene_of
 TOLERANCE = 0.05
 WHY = "of R: what a twentieth of the layer is worth, as in the paper's figures"
 
-CELLS_A_WIDTH = 2
+CELLS_A_WIDTH = 1
 """Of BCRE's coarsest grid; each pulse gets three grids at least, and more until they suffice."""
+
+FINEST = 32
+"""Cells of BCRE's finest grid on one of its coarsest."""
 
 LOCAL_ERROR = 1e-4
 """Of BCRE's steps in time, relative to the largest R; a thirtieth of the error asked for."""
@@ -93,7 +96,7 @@ def _refined(scene: Scene, x: Array, automaton: Sequence[Array], coarsest: int) 
         lambda solution: _layers(run_of(scene, solution), x),
         allowed,
         coarsest=coarsest,
-        finest=16 * coarsest,
+        finest=FINEST * coarsest,
         tolerance=LOCAL_ERROR,
     )
 

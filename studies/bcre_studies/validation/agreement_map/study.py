@@ -6,7 +6,7 @@ A pulse on a slope has six dimensionless groups (``pulses``):
 
 A Latin hypercube of 512 scenes over Pe 0.05 to 20, m 2 to 20, T 0.5 to 10, a 1e-4 to 1, G -2 to 4
 and v dt/d + 2 D dt/d^2 from 0.2 to 0.9 is run in the automaton, in BCRE and in BCRE with D_eff and
-kappa_eff. BCRE is refined until its error is a tenth of what is reported. Another 256 scenes fit
+kappa_eff. BCRE is refined until its error is a tenth of what is reported. Another 128 scenes fit
 the one rule that is not derived. The shares depend on these ranges, the rules do not.
 
 The rules (derivation in ``prediction``): a thin pulse that keeps its shape differs by its variance
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
     from bcre_studies.comparison.claim import Claim
 
-TESTED, FITTED = 512, 256
+TESTED, FITTED = 512, 128
 TOGETHER = 16
 """Scenes that are measured as one case: most take a few milliseconds."""
 

@@ -66,9 +66,10 @@ def _critical(axis: Axes, critical: tuple[float, float]) -> None:
         axis.axhline(value, color=model.color, linewidth=0.9, linestyle=":")
         axis.annotate(
             rf"$S_d - S_c$, {model.label}",
-            (0.01, value),
+            (0.99, value),
             xycoords=("axes fraction", "data"),
             fontsize=7.5,
+            ha="right",
             va="bottom",
             color=model.color,
         )

@@ -84,6 +84,9 @@ BCRE_CELLS = (24, 48)
 FINER = (1, 2, 4)
 """Cells of the automaton on a unit of length, beside BCRE."""
 
+SAME = 1e-6
+"""Of a mean: numbers that differ by less are the same."""
+
 CONFIDENCE = 0.95
 TILTED, AT_ONE_PLACE, OF_LENGTH = "tilting", "tilting, trigger at one place", "tilting, length"
 FEEDING, CONTROL, BESIDE = "feeding", "tilting, height alone", "tilting by 0.05"
@@ -190,15 +193,19 @@ def _area(drive: Any) -> float:
 def _mean_row(kind: str, name: str, runs: pd.DataFrame) -> Row:
     """Means over the seeds, with the half-width of their intervals where there are several."""
     row: Row = {"drive": kind, "case": name, "seeds": len(runs)}
-    for column in ("start", "gap", "size"):
+    for column in ("start", "gap", "size", "duration"):
         row[column] = significant(float(runs[column].mean()), 4)
         row[f"{column}_band"] = significant(_band(runs[column]), 2)
-        row[f"{column}_sd"] = significant(float(runs[f"{column}_sd"].mean()), 3)
-    row["duration"] = significant(float(runs["duration"].mean()), 3)
+        row[f"{column}_sd"] = _spread(float(runs[f"{column}_sd"].mean()), row[column])
     row["big"] = int(runs["big"].sum())
     row["share_of_sand"] = round(float(runs["share_of_sand"].mean()), 3)
     row["empty_decades"] = round(float(runs["empty_decades"].min()), 2)
     return row
+
+
+def _spread(sd: float, mean: float) -> float:
+    """To three digits; none where it is but rounding."""
+    return significant(sd, 3) if sd > SAME * mean else 0.0
 
 
 def _band(values: pd.Series) -> float:

@@ -52,6 +52,7 @@ def summed_up(events: Events, area: float) -> dict[str, float]:
         "size": float(sizes.mean()),
         "size_sd": float(sizes.std()),
         "duration": float(events.duration[big].mean()),
+        "duration_sd": float(events.duration[big].std()),
         "big": float(big.size),
         "share_of_sand": float(events.size[big].sum() / events.size.sum()),
         "empty_decades": math.log10(events.size[big].min() / small) if small > 0 else math.inf,
