@@ -23,6 +23,7 @@ LAYERS = (
     "on_line",
     "reporting",
     "on_plane",
+    "preview",
     "advisor",
     "running",
     "sweeps",

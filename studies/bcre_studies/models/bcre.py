@@ -147,9 +147,8 @@ class Bcre(Adapter):
             solution = bcre_pde.solve(problem, times, cells, **options)
             return solution, on_solution(solution)
 
-        if scene.solver.cells is not None:
-            return bcre_pde.measure_refined(on_cells, _given_grids(scene))
-        return bcre_pde.measure_refined(on_cells, _grids(scene), allowed)
+        asked = allowed if scene.solver.cells is None else None
+        return bcre_pde.measure_refined(on_cells, grids_of(scene), asked)
 
     def require_runnable(self, scene: Scene) -> None:
         grid = scene.solver.cells or COARSEST
@@ -241,7 +240,12 @@ def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def _grids(scene: Scene) -> Iterator[int]:
+def grids_of(scene: Scene) -> Iterable[int]:
+    """The grids that BCRE goes through on this scene, coarsest first."""
+    return _refined_grids(scene) if scene.solver.cells is None else _given_grids(scene)
+
+
+def _refined_grids(scene: Scene) -> Iterator[int]:
     """Ever finer grids, from half of the automaton's cells where those can hold the start."""
     cells = max(scene.domain.cells, COARSEST)
     if cells % 2 == 0 and scene.holds(cells // 2):

@@ -41,7 +41,7 @@ def run_scene(scene: Scene, choice: str, frames: int) -> list[Run]:
     times = frame_times(scene, frames)
     with compiling() as compiled_s:
         require_runnable(scene, choice, frames)
-        with _failures_name_their_key(scene):
+        with failures_name_their_key(scene):
             for model in chosen(choice):
                 with _progress(scene, model) as show:
                     run = model.answer(scene, times, runs, show)
@@ -60,7 +60,7 @@ def require_runnable(scene: Scene, choice: str, frames: int) -> None:
         small to compute with.
     """
     adapters = [model.adapter() for model in chosen(choice)]
-    with _failures_name_their_key(scene):
+    with failures_name_their_key(scene):
         needed = sum(adapter.memory(scene, frames) for adapter in adapters)
         memory.require(f"{_grids(scene)} with --frames = {frames}", needed)
         for adapter in adapters:
@@ -74,7 +74,7 @@ def notes(scene: Scene, choice: str) -> list[str]:
 
 
 @contextmanager
-def _failures_name_their_key(scene: Scene) -> Iterator[None]:
+def failures_name_their_key(scene: Scene) -> Iterator[None]:
     """Raise floating-point errors; what a run can fail of names a key of the scene."""
     try:
         with (
