@@ -6,7 +6,6 @@ import click
 
 from bcre_studies.commands import options
 
-
 WIDTH = 18
 """Of the names on the left."""
 

@@ -71,7 +71,7 @@ def _measures(scene: Scene, cells: int) -> list[tuple[str, str, Measure, bool]]:
     area = f"{length}^2" if length else ""
     measures: list[tuple[str, str, Measure, bool]] = [
         (LARGEST, length, lambda run: float(run.R.max()), True),
-        (LEFT, area, lambda run: run.d * float(run.R[-1].sum()), True),
+        (LEFT, area, lambda run: run.d * float(run.R[-1].sum()), False),
     ]
     if scene.domain.ends != "periodic":
         measures.append(("area out through the foot", area, _out, False))
