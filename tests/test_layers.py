@@ -20,6 +20,7 @@ LAYERS = (
     "validation",
     "verification",
     "performance",
+    "on_line",
     "reporting",
     "on_plane",
     "advisor",

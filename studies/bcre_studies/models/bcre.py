@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -97,8 +98,10 @@ class Bcre(Adapter):
         rolling layer.
         """
         x = scene.centres()
+        grids: list[Run] = []
 
         def measure(run: Run) -> list[Array]:
+            grids.append(run)
             frames = range(run.t.size)
             return [np.array([run.sample(x, field, frame) for frame in frames]) for field in "Ru"]
 
@@ -117,7 +120,8 @@ class Bcre(Adapter):
                 f"solver.method = {scene.solver.method!r}: {failure}; must be a method that can "
                 f"solve this scene to solver.tolerance = {scene.solver.tolerance!r}"
             ) from None
-        return run_of(scene, found[0].solution, found)
+        finest = run_of(scene, found[0].solution, found)
+        return replace(finest, coarser=tuple(grids[-bcre_pde.LEAST_GRIDS : -1]))
 
     def measured(
         self,

@@ -104,10 +104,10 @@ def _progress(scene: Scene, model: Model) -> Iterator[Callable[[Run], bool]]:
     from rich.progress import Progress
 
     with Progress(console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task(model.label, total=scene.time.until)
+        task = progress.add_task(model.text, total=scene.time.until)
 
         def show(run: Run) -> bool:
-            text = f"{model.label}, {run.x.size} cells"
+            text = f"{model.text}, {run.x.size} cells"
             progress.update(task, description=text, completed=float(run.t[-1]))
             return False
 
