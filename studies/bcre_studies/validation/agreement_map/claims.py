@@ -6,6 +6,7 @@ import pandas as pd
 
 from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.models.registry import BCRE
 from bcre_studies.validation.agreement_map.comparison import FIT_SEED, TEST_SEED
 from bcre_studies.validation.agreement_map.measured import FAILED, TOLERANCE, WHY
 from bcre_studies.validation.agreement_map.prediction import largest_broadening
@@ -118,7 +119,7 @@ def _slopes(comparison: pd.DataFrame) -> Claim:
         "A finite pulse needs the same slope to run to the top in the automaton as in BCRE.",
         Verdict.AGREE if worst <= TOLERANCE else Verdict.DISAGREE,
         f"with a = {', '.join(f'{a:g}' for a in THICKNESSES)} it takes s = "
-        f"{', '.join(f'{s:.2f}' for s in coarse['pde'])} in BCRE, "
+        f"{', '.join(f'{s:.2f}' for s in coarse[BCRE.column])} in BCRE, "
         f"{', '.join(f'{s:.2f}' for s in coarse['automaton'])} in the automaton at Pe = 1 and "
         f"{', '.join(f'{s:.2f}' for s in finest['automaton'])} at Pe = {PECLETS[0]:g}. The "
         f"automaton's differ by {rows['difference'].min():.0%} to {worst:.0%}",

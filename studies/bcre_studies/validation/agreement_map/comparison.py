@@ -55,11 +55,11 @@ def _slope_row(thresholds: pd.DataFrame, thickness: float, peclet: float) -> Row
     return {
         "quantity": "s at which it runs to the top",
         "case": f"a = {thickness:g}, Pe = {peclet:g}",
-        "automaton": own,
+        AUTOMATON.column: own,
         "low": round(own - HALF_WIDTH, 4),
         "high": round(own + HALF_WIDTH, 4),
-        "pde": fine,
-        "pde_error": significant(abs(fine - coarse) + HALF_WIDTH, 1),
+        BCRE.column: fine,
+        f"{BCRE.column}_error": significant(abs(fine - coarse) + HALF_WIDTH, 1),
         "difference": significant(abs(own - fine) / fine, 3),
     }
 
