@@ -81,7 +81,7 @@ def test_scene_called_like_a_built_in_one_has_no_part_of_its_folder(bcre, scene)
 
 
 def test_two_scenes_of_one_name_share_no_advice(bcre, scene, monkeypatch):
-    monkeypatch.setattr(advice_text, "advise", None)  # it must be refused before
+    monkeypatch.setattr(advice_text, "advise_with_reference", None)  # it must be refused before
     one, other = scene("a"), scene("b")
     Path("out").mkdir()
     Path("out/scene-advice.toml").write_text("# 50 cells\n# advised for ../a/scene.toml\n")
