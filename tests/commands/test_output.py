@@ -225,6 +225,23 @@ def test_module_is_the_command():
     assert (ended.returncode, ended.stdout) == (0, f"bcre {release()}\n")
 
 
+@pytest.mark.parametrize(
+    ("typed", "offered"),
+    [
+        ("run figure1_b", "plain,figure1_between"),
+        ("show rough", "plain,rough_slope"),
+        ("study second", "plain,second_critical_angle"),
+        ("sh", "plain,show"),
+        ("run figure2 --mod", "plain,--model"),
+    ],
+)
+def test_shell_completes_what_is_typed(bcre, monkeypatch, typed, offered):
+    monkeypatch.setenv("_BCRE_COMPLETE", "bash_complete")
+    monkeypatch.setenv("COMP_WORDS", f"bcre {typed}")
+    monkeypatch.setenv("COMP_CWORD", str(len(typed.split())))
+    assert offered in bcre().out.splitlines()
+
+
 @pytest.mark.parametrize("command", [[], *([name] for name in cli.app.commands)])
 def test_every_help_has_an_example_that_begins_with_the_command(bcre, command):
     ended = bcre(*command, "--help")

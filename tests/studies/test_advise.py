@@ -154,7 +154,7 @@ def test_past_a_scarp_advice_is_against_a_named_kappa_that_the_advised_scene_has
     assert advice.question.scene == scene.with_changes(kappa=0.01)  # gamma d/2, d = 2
     assert advice.pilots_s > advice.instead_of.pilots_s
     best, path = advice.options[0], tmp_path / "advised.toml"
-    fine = run_model(advice.question.scene, "pde", advice.question.times, 800)
+    fine = run_model(advice.question.scene, "pde", advice.question.times, 400)
     run = run_model(advice.question.scene, best.model, advice.question.times, best.cells)
     assert deviation(run, fine) <= 0.05
     told = text(advice, "figure1", path)
