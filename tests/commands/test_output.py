@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from click.shell_completion import BashComplete
 
 from bcre_studies import cli
 from bcre_studies.advisor import advice_text
@@ -228,18 +229,25 @@ def test_module_is_the_command():
 @pytest.mark.parametrize(
     ("typed", "offered"),
     [
-        ("run figure1_b", "plain,figure1_between"),
-        ("show rough", "plain,rough_slope"),
-        ("study second", "plain,second_critical_angle"),
-        ("sh", "plain,show"),
-        ("run figure2 --mod", "plain,--model"),
+        ("run figure1_b", "figure1_between"),
+        ("show rough", "rough_slope"),
+        ("study second", "second_critical_angle"),
+        ("sh", "show"),
+        ("run figure2 --mod", "--model"),
     ],
 )
-def test_shell_completes_what_is_typed(bcre, monkeypatch, typed, offered):
-    monkeypatch.setenv("_BCRE_COMPLETE", "bash_complete")
-    monkeypatch.setenv("COMP_WORDS", f"bcre {typed}")
-    monkeypatch.setenv("COMP_CWORD", str(len(typed.split())))
-    assert offered in bcre().out.splitlines()
+def test_shell_completes_what_is_typed(typed, offered):
+    *before, last = typed.split()
+    completion = BashComplete(cli.app, {}, "bcre", "_BCRE_COMPLETE")
+    assert offered in [item.value for item in completion.get_completions(before, last)]
+
+
+def test_shell_is_answered_under_the_name_of_the_command():
+    script = "from bcre_studies.cli import main; main()"
+    environment = os.environ | {"_BCRE_COMPLETE": "bash_source"}
+    command = [sys.executable, "-c", script]
+    ended = subprocess.run(command, env=environment, capture_output=True, text=True)
+    assert "complete -o nosort -F _bcre_completion bcre" in ended.stdout
 
 
 @pytest.mark.parametrize("command", [[], *([name] for name in cli.app.commands)])
