@@ -2,19 +2,31 @@
 SHELL := /bin/sh
 PYTHON ?= python3
 BIN := .venv/bin
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: help install reports speed test bench check lint clean
+# The environment is this folder's own, whatever the user's settings for others are.
+export PIP_USER := 0
+unexport PIP_TARGET PIP_PREFIX PYTHONPATH PYTHONHOME
+
+# A moved or copied environment runs the code of where it was made, or nothing: it is made again.
+RUNS := $(BIN)/python -I -c 'from importlib.util import find_spec; print(find_spec("bcre_studies").origin)'
+ifneq ($(shell $(RUNS) 2>/dev/null),$(CURDIR)/studies/bcre_studies/__init__.py)
+.PHONY: .venv/installed
+CLEAR := --clear
+endif
+
+.PHONY: help install reports speed maps test test-cluster docs faults bench check lint clean
 
 help: ## list the targets
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-9s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-13s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 install: .venv/installed ## create .venv with the locked dependencies
 
 .venv/installed: requirements.lock pyproject.toml
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo 'Python 3.11 or newer is needed: make PYTHON=python3.11' >&2; exit 2; }
-	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --require-hashes -r requirements.lock
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo 'Python 3.11 or newer is needed: make PYTHON=python3.11' >&2; exit 2; }
+	"$(PYTHON)" -m venv $(CLEAR) .venv
+	$(PIP) --no-compile --require-hashes -r requirements.lock
+	$(PIP) --no-deps --no-build-isolation -e .
 	@touch $@
 
 reports: install ## run all studies, write reports/; time them here, into reports/local/
@@ -25,12 +37,31 @@ speed: install ## renew the committed record of speed (some minutes, on a quiet 
 	$(BIN)/bcre speed --record
 	$(BIN)/bcre report
 
-test: install ## run the tests
+maps: install ## the agreement map from 200,000 scenes (hours; SCHEDULER=tcp://host:port: on a cluster)
+	$(BIN)/python -c 'from bcre_studies.validation.agreement_map.fine import main; main()' $(if $(SCHEDULER),--scheduler $(SCHEDULER))
+
+test: install ## run the tests; those of the page where Chromium is installed
+	@! command -v chromium >/dev/null || $(BIN)/python -c 'import playwright' 2>/dev/null \
+		|| $(PIP) --no-compile --require-hashes -r requirements-browser.lock \
+		|| echo 'Playwright cannot be installed here: the page is not tried in a browser' >&2
 	$(BIN)/python -m pytest
+
+test-cluster: install ## run the sweeps' tests on a Dask scheduler with two workers on this machine
+	@$(BIN)/python -c 'import distributed' 2>/dev/null \
+		|| $(PIP) --require-hashes -r requirements-cluster.lock
+	$(BIN)/python -m pytest -n 0 -o python_files='cluster_*.py' -o 'pythonpath=tests/robustness tests/cluster' tests/cluster
+
+docs: install ## build the documentation, docs/_build/index.html; a warning is an error
+	@$(BIN)/python -c 'import furo, myst_parser, sphinx' 2>/dev/null \
+		|| $(PIP) --require-hashes -r requirements-docs.lock
+	$(BIN)/python -m sphinx -b html -q -W --keep-going docs docs/_build
+
+faults: install ## try every fault again and write reports/quality/faults.csv
+	$(BIN)/python tests/robustness/faults.py
 
 bench: install ## time the automaton against what would be used instead (under 3 minutes)
 	@$(BIN)/python -c 'import fipy' 2>/dev/null \
-		|| $(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-bench.lock \
+		|| $(PIP) --require-hashes -r requirements-bench.lock \
 		|| echo 'FiPy cannot be installed here: its benchmarks are skipped' >&2
 	$(BIN)/python -m pytest -o addopts='--import-mode=importlib -q --strict-markers' -o python_files='bench_*.py' -o python_functions='bench_*' tests/benchmarks
 
@@ -43,5 +74,5 @@ lint: install ## ruff and mypy
 	$(BIN)/mypy
 
 clean: ## remove the environment, caches and everything that is built
-	rm -rf .venv .cache .mypy_cache .pytest_cache .ruff_cache .hypothesis out reports/local
+	rm -rf .venv .cache .mypy_cache .pytest_cache .ruff_cache .hypothesis docs/_build out reports/local
 	find ca pde studies tests -name __pycache__ -type d -prune -exec rm -rf {} +

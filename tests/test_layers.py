@@ -1,22 +1,29 @@
 """The rooms of the studies stand in one order, and nothing imports from a room above its own."""
 
 import ast
+import re
 from pathlib import Path
 
 import pytest
 
 import bcre_studies
 from bcre_studies import catalog
+from bcre_studies.system.files import ROOT as PROJECT
 
 LAYERS = (
+    "__main__",
     "cli",
+    "commands",
     "publishing",
     "catalog",
     "paper_claims",
     "validation",
     "verification",
     "performance",
+    "on_line",
     "reporting",
+    "on_plane",
+    "preview",
     "advisor",
     "running",
     "sweeps",
@@ -90,3 +97,9 @@ def test_studies_never_import_studies():
     for name, others in IMPORTS.items():
         if name.partition(".")[0] in STUDIES:
             assert not (others - {name}) & modules, name
+
+
+def test_contributing_lists_the_layers_in_their_order():
+    text = (PROJECT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    listed = re.findall(r"^\| `(\w+)` \|", text, flags=re.MULTILINE)
+    assert tuple(listed) == LAYERS

@@ -1,22 +1,35 @@
 """Two-layer cellular automaton of sandpile surfaces (Pla-Castells, García-Fernández, Martínez).
 
-Start at :mod:`bcre_ca.step` for the rule itself, :mod:`bcre_ca.rule` for its parameters,
-:mod:`bcre_ca.evolve` for running it and :mod:`bcre_ca.theory` for what can be said of it with
-pencil and paper.
+Start at :mod:`bcre_ca.line.step` for the rule itself, :mod:`bcre_ca.rule` for its parameters,
+:mod:`bcre_ca.line.evolve` for running it and :mod:`bcre_ca.theory` for its closed forms.
 """
 
-from bcre_ca.evolve import MARGIN, Pile, advance, evolve, frames, largest_stable_step
+from bcre_ca.line.evolve import (
+    MARGIN,
+    advance,
+    evolve,
+    evolve_many,
+    frames,
+    largest_stable_step,
+    march,
+)
+from bcre_ca.line.kernels import BLOCK, stepped_cells
+from bcre_ca.line.pile import Pile
+from bcre_ca.line.step import step
 from bcre_ca.rule import Rule, UnstableStep
-from bcre_ca.step import step
 
 __all__ = [
+    "BLOCK",
     "MARGIN",
     "Pile",
     "Rule",
     "UnstableStep",
     "advance",
     "evolve",
+    "evolve_many",
     "frames",
     "largest_stable_step",
+    "march",
     "step",
+    "stepped_cells",
 ]

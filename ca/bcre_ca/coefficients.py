@@ -1,60 +1,142 @@
-"""The rule's constants, folded per step and cell: what every path of the automaton computes with.
+"""The rule's constants per step and cell, which every path of the automaton computes with.
 
-An absent term is None rather than 0: the type of None tells the compiler to leave it out. The
-functions here run as Python and compiled alike, since a step that follows its bounds is folded
-anew inside the compiled loop.
+The functions here run as Python and compiled: where the step follows its bounds, the constants are
+folded anew inside the compiled loop. Terms that a rule does without are None
+(:mod:`bcre_ca.absent`).
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from numba.extending import register_jitable
+from numba.extending import overload, register_jitable
 
+from bcre_ca.absent import or_else, over, plus, times
 from bcre_ca.exchange import exchanging
+
+
+class Upwind(NamedTuple):
+    """The paper's differences, of first order."""
+
+
+class Calibrated(NamedTuple):
+    """Upwind, less the diffusion and the curvature that upwind differences add."""
+
+
+class Limited(NamedTuple):
+    """Second order with limited slopes."""
+
+
+class InPlace(NamedTuple):
+    """Upwind, cells updated in place one after the other, downhill or uphill."""
+
+    downhill: bool
+
+
+CompiledScheme = Upwind | Calibrated | Limited | InPlace
+"""A scheme is a type, so that each is compiled by itself."""
+
+
+def by_scheme(default: Callable[..., Any], others: dict[type, Callable[..., Any]]) -> Any:
+    """A function whose body is chosen by the scheme, its last argument.
+
+    Python chooses at each call, the compiler once.
+    """
+
+    def chosen(*arguments: Any) -> Any:
+        return others.get(type(arguments[-1]), default)(*arguments)
+
+    def compiled(*arguments: Any) -> Any:
+        return others.get(arguments[-1].instance_class, default)
+
+    overload(chosen, strict=False)(compiled)
+    return chosen
 
 
 class Parameters(NamedTuple):
     """A :class:`bcre_ca.Rule` without its dt, as compiled code takes it.
 
-    ``slope`` is the one at which the exchange vanishes. ``D``, ``kappa``, ``v_up`` and ``dry`` are
-    None where the rule does without; ``calibrated``, ``limited`` and ``downhill``, for cells
-    updated in place one after the other downhill, are None or True.
+    ``repose_slope`` is the slope at which the exchange vanishes.
     """
 
     v: float
     D: float | None
     gamma: float
-    slope: float
+    repose_slope: float
     d: float
-    kappa: float | None
-    v_up: float | None
-    dry: float | None
-    calibrated: bool | None
-    limited: bool | None
-    downhill: bool | None = None
+    kappa: float | None = None
+    v_up: float | None = None
+    dry: float | None = None
+    scheme: CompiledScheme = Upwind()
 
 
 class Coefficients(NamedTuple):
-    """``c = v dt/d``, ``b = D dt/d^2``, ``q = c + b``, ``k = gamma dt/d`` and ``s = ±Sc d`` (minus
-    for the printed sign); ``a``, ``m`` and ``u`` as :func:`bcre_ca.exchange.eroded` takes them, and
-    the thickness ``dry`` below which a layer comes to rest.
+    """The constants of a step, without units except where given.
 
-    The flux out of cell i is ``q R(i) - b R(i+1)`` and the exchange ``R(i) (k (h(i) - h(i+1) -
-    s))``, in this order of operations. In a calibrated rule b is what the diffusion of the upwind
-    flux, (c/2)(1 - c), leaves of D dt/d^2, never less than 0. Without D, b is None.
+    courant: v dt/d.
+    diffusion: D dt/d^2; in a calibrated rule what the diffusion of the upwind flux,
+        courant (1 - courant)/2, leaves of it, never less than 0.
+    outgoing: courant + diffusion, the part of R that leaves a cell.
+    exchange: gamma dt/d, 1/length.
+    repose_drop: ±Sc d, the drop to the next cell at repose (minus for the printed sign), a length.
+    saturation: gamma/v_up, 1/length.
+    curvature: kappa dt/d^2, 1/length.
+    wave_correction: exchange/2 in a calibrated rule, which takes the rule's own curvature
+        (gamma d/2)(1 - exchange X) back: the surface wave becomes that of Lax and Wendroff.
+    dry: thickness below which a layer comes to rest, a length.
+    emptying: steps in which a cell would empty, 1/(courant + 2 diffusion); absent without ``dry``.
     """
 
-    c: float
-    b: float | None
-    q: float
-    k: float
-    s: float
-    a: float | None
-    m: float | None
-    u: float | None
+    courant: float
+    diffusion: float | None
+    outgoing: float
+    exchange: float
+    repose_drop: float
+    saturation: float | None
+    curvature: float | None
+    wave_correction: float | None
     dry: float | None
+    emptying: float | None
+    scheme: CompiledScheme
+
+
+def row_of(terms: Parameters | Coefficients) -> list[float]:
+    """The terms as numbers, without the scheme; 0 for an absent one."""
+    *numbers, _ = terms
+    return [0.0 if number is None else number for number in numbers]
+
+
+@register_jitable
+def coefficients_in(row: Any, like: Coefficients) -> Coefficients:
+    """What :func:`row_of` has made a row of; ``like`` says which terms are absent."""
+    return Coefficients(
+        row[0],
+        _unless_absent(like.diffusion, row[1]),
+        row[2],
+        row[3],
+        row[4],
+        _unless_absent(like.saturation, row[5]),
+        _unless_absent(like.curvature, row[6]),
+        _unless_absent(like.wave_correction, row[7]),
+        _unless_absent(like.dry, row[8]),
+        _unless_absent(like.emptying, row[9]),
+        like.scheme,
+    )
+
+
+@register_jitable
+def parameters_in(row: Any, scheme: CompiledScheme) -> Parameters:
+    """What :func:`row_of` has made a row of, where no term is absent."""
+    return Parameters(row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], scheme)
+
+
+@register_jitable
+def _unless_absent(like: Any, value: float) -> Any:
+    if like is None:
+        return None
+    return value
 
 
 @register_jitable
@@ -63,58 +145,61 @@ def fold(p: Parameters, dt: float) -> Coefficients:
 
     d d and not d**2, which Python and the compiler round differently for one d in a thousand.
     """
-    c = p.v * dt / p.d
-    b = _diffusion(_scaled_before(p.D, dt, p.d * p.d), c, p.calibrated)
-    k = p.gamma * dt / p.d
+    courant = p.v * dt / p.d
+    exchange = p.gamma * dt / p.d
+    diffusion = _diffusion_left(over(times(p.D, dt), p.d * p.d), courant, p.scheme)
+    outgoing = plus(courant, diffusion)
     return Coefficients(
-        c,
-        b,
-        _sum(c, b),
-        k,
-        p.slope * p.d,
-        _saturation(p.gamma, p.v_up),
-        _scaled(p.kappa, dt / (p.d * p.d)),
-        _scaled(p.calibrated, k / 2),
+        courant,
+        diffusion,
+        outgoing,
+        exchange,
+        p.repose_slope * p.d,
+        over(p.gamma, p.v_up),
+        times(p.kappa, dt / (p.d * p.d)),
+        _wave_correction(exchange, p.scheme),
         p.dry,
+        emptying_steps(plus(outgoing, diffusion), p.dry),
+        p.scheme,
     )
 
 
 @register_jitable
-def _diffusion(b: Any, c: float, calibrated: bool | None) -> Any:
-    if b is None:
+def emptying_steps(leaving: Any, dry: Any) -> Any:
+    """Steps in which a cell empties that loses the part ``leaving`` in each; 1 where none does."""
+    if dry is None:
         return None
-    if calibrated is None:
-        return b
-    return max(b - c * (1.0 - c) / 2, 0.0)
+    return 1.0 / leaving if leaving > 0 else 1.0
+
+
+def _diffusion_of_calibrated(diffusion: Any, courant: float, scheme: Calibrated) -> Any:
+    if diffusion is None:
+        return None
+    return max(diffusion - courant * (1.0 - courant) / 2, 0.0)
+
+
+_diffusion_left = by_scheme(
+    lambda diffusion, courant, scheme: diffusion, {Calibrated: _diffusion_of_calibrated}
+)
+_wave_correction = by_scheme(
+    lambda exchange, scheme: None, {Calibrated: lambda exchange, scheme: exchange / 2}
+)
 
 
 @register_jitable
-def _saturation(gamma: float, v_up: Any) -> Any:
-    if v_up is None:
-        return None
-    return gamma / v_up
-
-
-@register_jitable
-def _scaled_before(value: Any, factor: float, divisor: float) -> Any:
-    if value is None:
-        return None
-    return value * factor / divisor
-
-
-@register_jitable
-def _sum(c: float, b: Any) -> float:
-    if b is None:
-        return c
-    total: float = c + b
-    return total
-
-
-@register_jitable
-def _scaled(value: Any, factor: float) -> Any:
-    if value is None:
-        return None
-    return value * factor
+def every_term(p: Parameters) -> Parameters:
+    """The same rule with no term absent, for what need not be compiled for each choice of terms."""
+    return Parameters(
+        p.v,
+        or_else(p.D, 0.0),
+        p.gamma,
+        p.repose_slope,
+        p.d,
+        or_else(p.kappa, 0.0),
+        or_else(p.v_up, math.inf),
+        or_else(p.dry, 0.0),
+        p.scheme,
+    )
 
 
 @register_jitable
@@ -126,55 +211,43 @@ def largest_step(p: Parameters, largest_R: float, sink: float) -> float:
     largest_R: largest rolling layer, a length.
     sink: fastest loss per unit of layer, max(kappa h_xx - gamma (S - Sc), 0), 1/time.
     """
-    X = exchanging(largest_R, _saturation(p.gamma, p.v_up))
-    largest: float = _largest_step(
-        p.v / p.d,
-        _over(p.D, p.d**2),
-        p.gamma / p.d * X,
-        _curvature_rate(X, p.d, p.kappa),
-        sink,
-        p.calibrated,
-        p.limited,
-        p.downhill,
-    )
+    X = exchanging(largest_R, over(p.gamma, p.v_up))
+    drift, spread = p.v / p.d, or_else(over(p.D, p.d**2), 0.0)
+    climb, bending = p.gamma / p.d * X, or_else(over(times(p.kappa, X), p.d**2), 0.0)
+    largest: float = _bound(drift, spread, sink, climb, bending, p.scheme)
     return largest
 
 
-@register_jitable
-def _over(D: float | None, area: float) -> float:
-    if D is None:
-        return 0.0
-    return D / area
+def _bound_of_upwind(
+    drift: float, spread: float, sink: float, climb: float, bending: float, scheme: CompiledScheme
+) -> Any:
+    return min(_inverse(drift + 2 * spread + sink), _inverse(climb + 2 * bending))
 
 
-@register_jitable
-def _curvature_rate(X: float, d: float, kappa: float | None) -> float:
-    if kappa is None:
-        return 0.0
-    return kappa * X / d**2
+def _bound_of_calibrated(
+    drift: float, spread: float, sink: float, climb: float, bending: float, scheme: CompiledScheme
+) -> Any:
+    of_layer = min(_inverse(drift + sink), _step_of_quadratic(drift, 2 * spread + sink))
+    return min(of_layer, _step_of_quadratic(climb, 2 * bending))
 
 
-@register_jitable
-def _largest_step(
-    drift: float,
-    spread: float,
-    climb: float,
-    bending: float,
-    sink: float,
-    calibrated: bool | None,
-    limited: bool | None,
-    downhill: bool | None,
-) -> float:
-    of_layer: float = _inverse(drift + 2 * spread + sink)
-    of_wave: float = _inverse(climb + 2 * bending)
-    if limited is not None:
-        of_layer = of_layer / 2
-    if calibrated is not None:
-        of_layer = min(_inverse(drift + sink), _step_of_quadratic(drift, 2 * spread + sink))
-        of_wave = _step_of_quadratic(climb, 2 * bending)
-    if downhill is not None:
-        of_wave = _inverse(climb + drift + spread)
-    return min(of_layer, of_wave)
+def _bound_of_limited(
+    drift: float, spread: float, sink: float, climb: float, bending: float, scheme: CompiledScheme
+) -> Any:
+    return min(_inverse(drift + 2 * spread + sink) / 2, _inverse(climb + 2 * bending))
+
+
+def _bound_in_place(
+    drift: float, spread: float, sink: float, climb: float, bending: float, scheme: InPlace
+) -> Any:
+    passing = climb + drift + spread if scheme.downhill else climb
+    return min(_inverse(drift + 2 * spread + sink), _inverse(passing))
+
+
+_bound = by_scheme(
+    _bound_of_upwind,
+    {Calibrated: _bound_of_calibrated, Limited: _bound_of_limited, InPlace: _bound_in_place},
+)
 
 
 @register_jitable

@@ -1,31 +1,37 @@
-r"""The exchange law, in one place: what a step erodes from h and adds to R; and the flux of R.
+r"""The exchange law and the flux of the rolling layer, each in one place.
 
-    dt E = X(R) (gamma dt (S - Sc) - kappa dt h_xx)
+    dt E   = X(R) (gamma dt (S - Sc) - kappa dt h_xx)         eroded from h and added to R in a step
+    dt/d F = (v dt/d + D dt/d^2) R(i) - (D dt/d^2) R(i+1)     carried from cell i to cell i+1
 
-with X(R) = R, or X(R) = R/(1 + gamma R/v_up) for thick flows, in which only the grains next to the
-static layer exchange (Boutreux, Raphaël and de Gennes 1998). A term that a scene does not need is
-None, and the compiled code then does not hold it; the plain step calls the same lines with arrays.
+X(R) = R, or R/(1 + gamma R/v_up) for thick flows, in which only the grains next to the static
+layer exchange (Boutreux, Raphaël and de Gennes 1998).
+
+K stands for the :class:`bcre_ca.coefficients.Coefficients`. The plain step calls these functions
+with arrays, the compiled one with single cells.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from numba.extending import register_jitable
 
+from bcre_ca.absent import minus, plus, times
+
+if TYPE_CHECKING:
+    from bcre_ca.coefficients import Coefficients
+
 
 @register_jitable
-def exchanging(R: Any, a: float | None) -> Any:
-    """X(R), the part of the layer that exchanges; ``a`` is gamma/v_up or None."""
-    if a is None:
+def exchanging(R: Any, saturation: float | None) -> Any:
+    """X(R), the part of the layer that exchanges; ``saturation`` is gamma/v_up."""
+    if saturation is None:
         return R
-    return R / (1.0 + a * R)
+    return R / (1.0 + saturation * R)
 
 
 @register_jitable
-def eroded(
-    R: Any, drop: Any, bend: Any, k: float, a: float | None, m: float | None, u: float | None
-) -> Any:
+def eroded(R: Any, drop: Any, bend: Any, K: Coefficients) -> Any:
     """dt E of cells with layer R.
 
     Parameters
@@ -33,45 +39,45 @@ def eroded(
     R: rolling layer, a length.
     drop: fall to the next cell beyond that at repose, h(i) - h(i+1) - Sc d.
     bend: h(i-1) - 2 h(i) + h(i+1).
-    k: gamma dt/d.
-    a: gamma/v_up, or None for the linear law.
-    m: kappa dt/d^2, or None without curvature.
-    u: k/2 to take the rule's own curvature (gamma d/2)(1 - k X) back, which makes the surface wave
-        that of Lax and Wendroff; None to leave it.
     """
-    X = exchanging(R, a)
-    if u is None:
-        if m is None:
-            return X * (k * drop)
-        return X * (k * drop - m * bend)
-    if m is None:
-        return X * (k * drop + (u * (1.0 - k * X)) * bend)
-    return X * (k * drop + (u * (1.0 - k * X) - m) * bend)
+    X = exchanging(R, K.saturation)
+    correction = times(K.wave_correction, 1.0 - K.exchange * X)
+    return X * plus(K.exchange * drop, times(minus(correction, K.curvature), bend))
 
 
 @register_jitable
-def carried(R: Any, R_next: Any, q: float, b: float | None) -> Any:
-    """dt/d F, what leaves a cell of layer R for the next one; ``b`` is None without diffusion."""
-    if b is None:
-        return q * R
-    return q * R - b * R_next
+def eroded_at_foot(R: Any, bend: Any, K: Coefficients) -> Any:
+    """dt E of the last cell: the surface goes on at repose, so that only its curvature acts."""
+    return exchanging(R, K.saturation) * minus(0.0, times(K.curvature, bend))
 
 
 @register_jitable
-def spread(difference: Any, b: float | None) -> Any:
-    """b times a difference of layers; 0 without diffusion."""
-    if b is None:
-        return 0.0
-    return b * difference
+def carried(R: Any, R_next: Any, K: Coefficients) -> Any:
+    """dt/d F, what leaves a cell of layer R for the next one downhill."""
+    return minus(K.outgoing * R, times(K.diffusion, R_next))
 
 
 @register_jitable
-def settle(h: Any, R: Any, dry: float | None) -> tuple[Any, Any]:
-    """h and R after a layer thinner than ``dry`` has come to rest; mass stays.
+def deposit_thin(
+    h: Any, R: Any, R_before: Any, dry: float | None, emptying: float | None
+) -> tuple[Any, Any]:
+    """h and R after a thin layer has come to rest; mass stays.
 
-    A truth value times a number rather than a branch, so that arrays and cells are treated alike.
+    A layer comes to rest where it is thinner than ``dry``, and still would be if it went on
+    changing as in this step for the time in which a cell empties. That time, 1/(v/d + 2 D/d^2), is
+    no shorter than a stable step and does not depend on it: a cell that fills from a thick layer
+    gains less than any ``dry`` in a short step, and must not be emptied after each of them.
+
+    Parameters
+    ----------
+    h, R: the layers after a step, lengths.
+    R_before: the rolling layer before it.
+    dry: thickness, a length; None where no layer comes to rest.
+    emptying: steps in which a cell empties.
     """
     if dry is None:
         return h, R
-    left = R * (dry > R)
-    return h + left, R - left
+    coming = R_before + emptying * (R - R_before)
+    # A factor, not a branch, so that arrays and cells are treated alike.
+    thin = R * ((dry > R) & (dry > coming))
+    return h + thin, R - thin

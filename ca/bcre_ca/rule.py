@@ -1,4 +1,4 @@
-"""The parameters of the automaton, the readings of its printed rule, its schemes and steps."""
+"""The parameters of the automaton: its coefficients, readings, schemes and stable steps."""
 
 from __future__ import annotations
 
@@ -8,12 +8,22 @@ from numbers import Real
 from typing import Literal, get_args
 
 from bcre_ca import theory
-from bcre_ca.coefficients import Coefficients, Parameters, fold, largest_step
+from bcre_ca.coefficients import (
+    Calibrated,
+    Coefficients,
+    CompiledScheme,
+    InPlace,
+    Limited,
+    Parameters,
+    Upwind,
+    fold,
+    largest_step,
+)
 
 Sign = Literal["consistent", "printed"]
 Order = Literal["synchronous", "right", "left"]
 Scheme = Literal["upwind", "calibrated", "limited"]
-Ends = Literal["open", "periodic"]
+Ends = Literal["open", "wall", "periodic"]
 
 ROUNDING = 1e-12
 """Relative slack with which a step counts as equal to its bound."""
@@ -23,6 +33,14 @@ LAYER_BOUND: dict[str, str] = {
     "upwind": "v dt/d + 2 D dt/d^2 + gamma dt max(Sc - S, 0) must not exceed 1",
     "calibrated": "(v dt/d)^2 + 2 D dt/d^2 + gamma dt max(Sc - S, 0) must not exceed 1",
     "limited": "2 (v dt/d + 2 D dt/d^2 + gamma dt max(Sc - S, 0)) must not exceed 1",
+}
+
+COMPILED: dict[str, CompiledScheme] = {
+    "upwind": Upwind(),
+    "calibrated": Calibrated(),
+    "limited": Limited(),
+    "right": InPlace(downhill=True),
+    "left": InPlace(downhill=False),
 }
 
 WAVE_BOUND: dict[str, str] = {
@@ -70,20 +88,28 @@ class Rule:
         paper as they stand, gamma R (S + Sc).
     order: ``"synchronous"`` reads every neighbour from the old state; ``"right"`` and ``"left"``
         update in place, sweeping downhill or uphill.
-    scheme: ``"upwind"`` is the paper's. ``"calibrated"`` takes the diffusion and the curvature that
-        the upwind rule adds of its own out of D and kappa, so that D_eff = D and kappa_eff =
-        kappa; where D is too small for that, D_eff comes as near as it can
-        (:meth:`effective_diffusion`, :meth:`calibrating_step`). ``"limited"`` is of second order
-        where the layers are smooth (:mod:`bcre_ca.limited`).
+    scheme: ``"upwind"`` is the paper's. ``"calibrated"`` subtracts from D and kappa what upwind
+        differences add to them, so that D_eff = D and kappa_eff = kappa. Where D is too small for
+        that, D_eff comes as near as it can (:meth:`effective_diffusion`,
+        :meth:`calibrating_step`). ``"limited"`` is of second order where the layers are smooth
+        (:mod:`bcre_ca.line.second_order`).
     kappa: curvature term of the exchange, length/time, >= 0.
     v_up: largest speed of the climbing wave, length/time, > 0; infinite for the linear exchange.
-    dry: a layer thinner than this after a step comes to rest: R is moved into h. A length, >= 0.
+    dry: a layer thinner than this comes to rest, R is moved into h, unless what flows in is about
+        to make it thicker (:func:`bcre_ca.exchange.deposit_thin`). A length, >= 0.
 
     Raises
     ------
     ValueError
         naming the parameter, its value and what is allowed. Whether ``dt`` is stable depends on
         the state too; :func:`bcre_ca.evolve` judges it.
+
+    >>> rule = Rule(v=0.1, D=0.1, gamma=0.01, Sc=0.5, d=1.0, dt=0.4)
+    >>> round(rule.second_critical_slope(), 6), round(rule.effective_diffusion(), 6)
+    (2.215729, 0.148)
+    >>> Rule(v=-0.1, D=0.1, gamma=0.01, Sc=0.5, d=1.0, dt=0.4)
+    Traceback (most recent call last):
+    ValueError: v = -0.1: must be a finite number >= 0
     """
 
     v: float
@@ -133,9 +159,7 @@ class Rule:
             kappa=float(self.kappa) if self.kappa > 0 else None,
             v_up=float(self.v_up) if math.isfinite(self.v_up) else None,
             dry=float(self.dry) if self.dry > 0 else None,
-            calibrated=True if self.scheme == "calibrated" else None,
-            limited=True if self.scheme == "limited" else None,
-            downhill=True if self.order == "right" else None,
+            scheme=COMPILED[self.scheme if self.order == "synchronous" else self.order],
         )
 
     def coefficients(self) -> Coefficients:
@@ -155,13 +179,14 @@ class Rule:
     ) -> float:
         """Largest dt that keeps R >= 0 and lets the surface wave cross at most a cell a step.
 
-        Of the upwind rule: v dt/d + 2 D dt/d^2 + sink dt <= 1, (gamma/d + 2 kappa/d^2) X dt <= 1,
-        where sink = max(kappa h_xx - gamma (S - Sc), 0) and X(R) is the layer that exchanges; of
-        the others see :func:`bcre_ca.theory.max_stable_step`. A sweep downhill adds to a cell what
-        leaves the one above before it looks at it, so that up to R/(1 - v dt/d - D dt/d^2)
-        exchange there: its second bound is (gamma R/d + v/d + D/d^2) dt <= 1. A sweep uphill, and
-        one downhill across joined ends, looks at cells downhill on which it has just laid sand
-        down, so that slopes fall further below repose than at the start: R >= 0 is not assured.
+        The upwind scheme needs v dt/d + 2 D dt/d^2 + sink dt <= 1 and (gamma/d + 2 kappa/d^2) X dt
+        <= 1, where sink = max(kappa h_xx - gamma (S - Sc), 0) and X(R) is the layer that exchanges.
+        For the other schemes see :func:`bcre_ca.theory.max_stable_step`.
+
+        A sweep downhill updates a cell after it has received what leaves the one above. Up to
+        R/(1 - v dt/d - D dt/d^2) exchanges there, and the second bound is
+        (gamma R/d + v/d + D/d^2) dt <= 1. A sweep uphill, or one downhill across joined ends, meets
+        slopes that the same sweep has already lowered by deposits: R >= 0 is then not assured.
 
         Parameters
         ----------
@@ -180,7 +205,7 @@ class Rule:
     def require_within(self, largest: float, largest_R: float) -> None:
         """Raise :class:`UnstableStep` where dt exceeds ``largest``, the largest stable step found.
 
-        ``largest_R`` is the layer that it was found for: it tells which of the bounds was passed.
+        ``largest_R``, the layer that it was found for, decides which of the bounds is named.
         """
         if not self.dt <= largest * (1 + ROUNDING):
             with_wave, without = (largest_step(self.parameters(), R, 0.0) for R in (largest_R, 0.0))
@@ -195,7 +220,7 @@ class Rule:
     def second_critical_slope(self) -> float:
         """Sd of the synchronous rule; see :func:`bcre_ca.theory.second_critical_excess`.
 
-        That of a calibrated rule follows from the D that its step leaves to it.
+        In a calibrated rule the diffusion left in its flux takes the place of D.
         """
         self._require_synchronous("the second critical slope")
         if self.scheme == "limited":
@@ -218,8 +243,8 @@ class Rule:
         return theory.effective_diffusion(self.v, self.diffusion_left(), self.d, self.dt)
 
     def diffusion_left(self) -> float:
-        """What the rule lets R diffuse by itself: D, or what calibrating leaves of it, b d^2/dt."""
-        return (self.coefficients().b or 0.0) * self.d**2 / self.dt
+        """The diffusion in the rule's flux: D, or what calibration leaves of it."""
+        return (self.coefficients().diffusion or 0.0) * self.d**2 / self.dt
 
     def effective_curvature(self, R0: float = 0.0) -> float:
         """kappa_eff of the modified equation; kappa + (gamma d/2)(1 - gamma R0 dt/d) for the upwind
@@ -238,6 +263,14 @@ class Rule:
         if self.scheme != "calibrated" or self.v == 0:
             return 0.0
         return max(self.d / self.v * (1 - 2 * self.D / (self.v * self.d)), 0.0)
+
+    def require_upwind(self, what: str) -> None:
+        """Raise ValueError where the rule is not the synchronous upwind one."""
+        if (self.order, self.scheme) != ("synchronous", "upwind"):
+            raise ValueError(
+                f"order = {self.order!r}, scheme = {self.scheme!r}: {what} is defined for the "
+                "synchronous upwind rule only"
+            )
 
     def _require_synchronous(self, what: str) -> None:
         if self.order != "synchronous":

@@ -1,11 +1,11 @@
-r"""Closed forms of the synchronous automaton: what the rule does, with pencil and paper.
+r"""Closed forms of the synchronous automaton.
 
 On a frozen slope S, with sigma = gamma (S - Sc), one step multiplies a rolling layer R = z^(-i) by
 
     G(z) = 1 + dt sigma - (v dt/d)(1 - z) + (D dt/d^2)(z - 2 + 1/z)
 
-(insert it into the rule with h(i) - h(i+1) = S d). z = e^(-j k d) is a Fourier mode of wavenumber
-k, and z = e^(-m d) a profile e^(m x), the uphill edge of a layer. All else here follows from G.
+as the rule shows for h(i) - h(i+1) = S d. A Fourier mode of wavenumber k has z = e^(-j k d); a
+profile e^(m x), the uphill edge of a layer, has z = e^(-m d). All else here follows from G.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ def rolling_mode_rate(v: float, D: float, d: float, dt: float, wavenumber: float
 def surface_mode_rate(gamma: float, R0: float, d: float, dt: float, wavenumber: float) -> complex:
     """Continuous-time rate ln(G)/dt of a Fourier mode of h under a uniform rolling layer R0.
 
-    The linearised rule is u(i) += c (u(i+1) - u(i)), c = gamma R0 dt/d, hence
-    G = 1 - c + c e^(j k d) and |G|^2 = 1 - 2 c (1 - c)(1 - cos k d): the automaton smooths where
-    the continuous model, with rate j gamma R0 k, only carries the roughness uphill.
+    The linearised rule is u(i) += c (u(i+1) - u(i)) with c = gamma R0 dt/d. Hence
+    G = 1 - c + c e^(j k d) and |G|^2 = 1 - 2 c (1 - c)(1 - cos k d): the automaton smooths
+    roughness, which the continuous model, with rate j gamma R0 k, only carries uphill.
     """
     c = gamma * R0 * dt / d
     return cmath.log(1 - c + c * cmath.exp(1j * wavenumber * d)) / dt
@@ -49,6 +49,9 @@ def second_critical_excess(v: float, D: float, gamma: float, d: float) -> float:
     Growth at a fixed place is governed by the saddle of G on the positive axis: dG/dz = 0 at
     z0^2 = D/(D + v d), and G(z0) = 1 gives Sd. As d -> 0 this becomes v^2/(4 D gamma); the ratio of
     the two is 4 (sqrt(1 + Pe) - 1)^2/Pe^2 with the cell Peclet number Pe = v d/D.
+
+    >>> [round(second_critical_excess(0.1, 0.1, 0.01, d), 6) for d in (1.0, 0.25, 1e-6)]
+    [1.715729, 2.229124, 2.499999]
     """
     if gamma == 0:
         return math.inf
@@ -64,14 +67,17 @@ def growth_rate_at_a_fixed_place(v: float, D: float, sigma: float, d: float, dt:
 def uphill_front_speed(v: float, D: float, sigma: float, d: float, dt: float) -> float:
     """Speed at which the uphill edge of a rolling layer climbs: min over m > 0 of ln G(m)/(m dt).
 
-    G(m) = 1 + dt sigma - (v dt/d)(1 - e^(-m d)) + (D dt/d^2)(e^(m d) - 2 + e^(-m d)): a profile
-    e^(m x) grows by G a step and so climbs at ln G/(m dt); the slowest one is selected. Negative
-    below Sd, where the edge is carried downhill. Becomes 2 sqrt(D sigma) - v as d -> 0.
+    A profile e^(m x) grows by G(e^(-m d)) a step and so climbs at ln G/(m dt); the slowest one is
+    selected. The speed is negative below Sd, where the edge is carried downhill. It becomes
+    2 sqrt(D sigma) - v as d -> 0.
 
     Raises
     ------
     ValueError
         where sigma <= 0: a layer that does not grow has no edge of constant speed.
+
+    >>> round(uphill_front_speed(v=0.1, D=0.1, sigma=0.01 * 2.1, d=1.0, dt=0.4), 4)
+    0.0105
     """
     if not sigma > 0:
         raise ValueError(f"sigma = {sigma!r}: a front needs growth, gamma (S - Sc) > 0")
@@ -93,20 +99,25 @@ def max_stable_step(
 ) -> float:
     """Largest dt of the upwind rule that keeps every weight >= 0.
 
-    R: v dt/d + 2 D dt/d^2 + gamma dt max(Sc - S, 0) <= 1, the weight of a cell's own R.
-    h: gamma max(R) dt/d <= 1, the weight of a cell's own u in u(i) += c (u(i+1) - u(i)).
+    R: v dt/d + 2 D dt/d^2 + gamma dt max(Sc - S, 0) <= 1, for the weight of a cell's own R.
+    h: gamma max(R) dt/d <= 1, for the weight of a cell's own u in u(i) += c (u(i+1) - u(i)).
 
-    A curvature term adds 2 kappa X dt/d^2 to the second. Of the calibrated rule the weights are
-    1 - max(c, c^2 + 2 b) - sink dt, with c = v dt/d and b = D dt/d^2, and its surface wave is
-    stable for (gamma X dt/d)^2 + 2 kappa X dt/d^2 <= 1. The limited rule lets at most twice a
-    cell's layer flow and so takes half the step in the first bound.
+    A curvature term adds 2 kappa X dt/d^2 to the second. In the calibrated scheme the weight is
+    1 - max(c, c^2 + 2 b) - sink dt, with c = v dt/d and b = D dt/d^2, and the surface wave is
+    stable for (gamma X dt/d)^2 + 2 kappa X dt/d^2 <= 1. The limited scheme lets up to twice a
+    cell's layer flow, which halves the step in the first bound.
 
     Parameters
     ----------
     largest_R: largest rolling layer, a length.
     deficit: largest max(Sc - S, 0), a slope.
+
+    >>> round(max_stable_step(v=2.5, D=0.1, gamma=0.01, d=1.0), 6)
+    0.37037
+    >>> round(max_stable_step(v=0.1, D=0.1, gamma=0.01, d=1.0, largest_R=100), 6)
+    1.0
     """
-    upwind = Parameters(v, D, gamma, 0.0, d, None, None, None, None, None)
+    upwind = Parameters(v, D, gamma, 0.0, d)
     return float(largest_step(upwind, largest_R, gamma * deficit))
 
 
@@ -115,6 +126,9 @@ def effective_diffusion(v: float, D: float, d: float, dt: float) -> float:
 
     Taylor expansion of the first-order upwind flux gives +v d/2, that of the Euler step
     -v^2 dt/2 (Warming and Hyett 1974, for this rule).
+
+    >>> round(effective_diffusion(v=2.5, D=0.1, d=1.0, dt=0.2), 6)
+    0.725
     """
     return D + v * d / 2 * (1 - v * dt / d)
 

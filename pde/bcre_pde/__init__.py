@@ -1,29 +1,48 @@
 """The BCRE equations of sandpile surfaces on py-pde.
 
-Start at :mod:`bcre_pde.equation` for the equations, :mod:`bcre_pde.exchange` and
-:mod:`bcre_pde.fluxes` for their right-hand side, :mod:`bcre_pde.solve` for solving them,
-:mod:`bcre_pde.fixed_step` for steps of fixed length, :mod:`bcre_pde.refine` for the error of a
-solution, and :mod:`bcre_pde.theory` and :mod:`bcre_pde.exact` for what is known in closed form.
+Start at :mod:`bcre_pde.equation` for the equations. Their coefficients are in
+:mod:`bcre_pde.material`, and their right-hand side is in :mod:`bcre_pde.exchange`,
+:mod:`bcre_pde.stencils` and :mod:`bcre_pde.line`. :mod:`bcre_pde.solve` solves them,
+:mod:`bcre_pde.fixed_step` takes steps of fixed length, :mod:`bcre_pde.refine` refines grids until
+the error by :mod:`bcre_pde.convergence` is small.
+:mod:`bcre_pde.theory` and :mod:`bcre_pde.exact` hold what is known in closed form.
+
+Nothing imported here needs py-pde or numba, which take seconds; ``solve`` imports them.
 """
 
-from bcre_pde.equation import BCRE, Material, largest_explicit_step
+from bcre_pde.convergence import error_of_finest, grid_convergence_index, jump_stands
 from bcre_pde.failure import SolveError
-from bcre_pde.fluxes import SMALLEST_GRID
-from bcre_pde.refine import Refined, grid_convergence_index, solve_refined
-from bcre_pde.solve import Problem, Solution, solve
-from bcre_pde.theory import second_critical_slope
+from bcre_pde.material import Material
+from bcre_pde.problem import SMALLEST_GRID, Ends, Method, Problem, Solution
+from bcre_pde.refine import (
+    COARSEST,
+    LEAST_GRIDS,
+    Measured,
+    measure_refined,
+    solve_refined,
+    solve_refined_each,
+)
+from bcre_pde.solve import solve
+from bcre_pde.theory import largest_explicit_step, second_critical_slope
 
 __all__ = [
-    "BCRE",
+    "COARSEST",
+    "LEAST_GRIDS",
     "SMALLEST_GRID",
+    "Ends",
     "Material",
+    "Measured",
+    "Method",
     "Problem",
-    "Refined",
     "Solution",
     "SolveError",
+    "error_of_finest",
     "grid_convergence_index",
+    "jump_stands",
     "largest_explicit_step",
+    "measure_refined",
     "second_critical_slope",
     "solve",
     "solve_refined",
+    "solve_refined_each",
 ]

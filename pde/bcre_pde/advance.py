@@ -6,7 +6,7 @@ import logging
 import math
 import sys
 from functools import partial
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from pde import FieldCollection
@@ -14,18 +14,17 @@ from pde.solvers import ScipySolver
 from scipy import sparse
 
 from bcre_pde.bounded import BoundedRungeKutta, layer_scale
-from bcre_pde.equation import BCRE
 from bcre_pde.explicit import FEHLBERG
 from bcre_pde.failure import SolveError, failed
+from bcre_pde.marched import Marched
+from bcre_pde.problem import Method
 
-Method = Literal["runge-kutta", "RK45", "DOP853", "LSODA", "BDF"]
-
-# Its warnings on the time that trackers take would stand between a user and an error message.
+# Its warnings on the time that trackers take would hide an error message.
 logging.getLogger("pde").setLevel(logging.ERROR)
 
 
 def advance(
-    equation: BCRE,
+    equation: Marched,
     state: FieldCollection,
     span: tuple[float, float],
     method: Method,
@@ -45,9 +44,9 @@ def advance(
         if not least < bound:
             raise SolveError(
                 f"{method}: the stable step {bound:.3g} at t = {span[0]:.6g} is too small to be "
-                f"taken, with R up to {largest_R:.3g} in cell {_thickest(state)}",
+                f"taken, with R up to {largest_R:.3g} in cell {_thickest(equation, state)}",
                 span[0],
-                _thickest(state),
+                _thickest(equation, state),
             )
         solver = partial(BoundedRungeKutta, dt_max=bound, dt_min=least, tolerance=tolerance)
         first = min(bound, span[1] - span[0])
@@ -75,10 +74,10 @@ def advance(
     return end, info["solver"]["steps"]
 
 
-def _bounded_step(equation: BCRE, largest_R: float, span: tuple[float, float]) -> float:
-    """The longest stable step; refused where the evaluations that are left cannot suffice."""
+def _bounded_step(equation: Marched, largest_R: float, span: tuple[float, float]) -> float:
+    """The longest stable step; refused where the evaluations left cannot suffice."""
     bound = equation.largest_explicit_step(largest_R)
-    needed = FEHLBERG.b.size * (span[1] - span[0]) / bound
+    needed = FEHLBERG.weights.size * (span[1] - span[0]) / bound
     if needed > equation.most_evaluations - equation.evaluations:
         raise SolveError(
             f"runge-kutta: steps of at most {bound:.3g}, the stable step with R up to "
@@ -89,12 +88,12 @@ def _bounded_step(equation: BCRE, largest_R: float, span: tuple[float, float]) -
     return bound
 
 
-def _thickest(state: FieldCollection) -> int:
-    return int(np.argmax(np.abs(state[1].data)))
+def _thickest(equation: Marched, state: FieldCollection) -> int | tuple[int, ...]:
+    return equation.cell(int(np.argmax(np.abs(state[1].data))))
 
 
 def _silenced() -> dict[str, Any]:
-    """NumPy's answers to overflow and the like, with no warning: what is not finite is found out.
+    """NumPy's settings for overflow and the like, without warnings: the end is checked instead.
 
     Where the caller asked for an error, it stays one.
     """
@@ -106,3 +105,28 @@ def _jacobian_pattern(cells: int) -> sparse.csc_array:
     offsets = [*range(-3, 4), *range(cells - 3, cells), *range(1 - cells, 4 - cells)]
     near = sparse.diags_array([np.ones(cells - abs(offset)) for offset in offsets], offsets=offsets)
     return sparse.kron(np.ones((3, 3)), near, format="csc")
+
+
+def advance_with_noise(
+    equation: Marched, state: FieldCollection, span: tuple[float, float], dt: float
+) -> FieldCollection:
+    """The state at the end of ``span``, by Euler-Maruyama steps that divide it, about ``dt`` long.
+
+    Raises
+    ------
+    SolveError
+        where the state is no longer finite.
+    """
+    steps = max(math.ceil((span[1] - span[0]) / dt), 1)
+    end: FieldCollection = equation.solve(
+        state,
+        span,
+        dt=(span[1] - span[0]) / steps,
+        tracker=None,
+        solver="euler",
+        adaptive=False,
+        backend="numpy",
+    )
+    if not np.isfinite(end.data).all():
+        raise SolveError(f"euler: the surface outgrew all numbers with dt = {dt!r}", span[1])
+    return end

@@ -17,15 +17,10 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.optimize import elementwise
 
-from bcre_pde.equation import Material
-from bcre_pde.solve import Ends, Problem
-
-Array = NDArray[np.float64]
-Profile = Callable[[Array], Array]
-
+from bcre_pde import simple_wave
+from bcre_pde.material import Material
+from bcre_pde.problem import Array, Ends, Problem
 
 MARGIN = 12.0
 """Distance kept from where the influence of an end would stand without any numerical diffusion."""
@@ -130,33 +125,22 @@ def frozen_slope_release(
     )
 
 
-def climbing_wave_surface(x: Array, R: Array, v: float, gamma: float, Sc: float) -> Array:
-    """h = -Sc x - R - (v/gamma) ln R, the surface under a climbing wave R > 0."""
-    return -Sc * x - R - v / gamma * np.log(R)
+def simple_wave_of_hump(
+    material: Material, height: float, width: float, length: float, until: float
+) -> ExactSolution:
+    """The simple wave of R0 = 1 + height exp(-((x - length/2)/width)^2), periodic.
 
-
-def climbing_wave(x: Array, t: float, R0: Profile, gamma: float, reach: float) -> Array:
-    r"""R(x, t) = R0(x + gamma R t), D = kappa = 0, solved for R at every x.
-
-    With D = kappa = 0 the quantity w = R + u + (v/gamma) ln R obeys w_t + v w_x = 0, since
-    w_t + v w_x = (R_t + v R_x)(1 + v/(gamma R)) + u_t + v u_x, where R_t + v R_x = -gamma R u_x and
-    u_t = gamma R u_x. Where w is the same everywhere it stays so, u is a function of R alone, and
-    R_t = gamma R R_x follows: a wave that climbs and steepens until :func:`breaking_time`.
-
-    Parameters
-    ----------
-    x: positions, shape (N,).
-    t: a time before the wave breaks.
-    R0: the initial rolling layer, > 0, on all positions reached.
-    reach: an upper bound of R0, a length.
+    See :mod:`bcre_pde.simple_wave`; D and kappa of the material are 0.
     """
-    if t == 0:
-        return R0(x)
+    R0 = partial(_hump, height=height, width=width, length=length)
+    speed = partial(simple_wave.climb, material)
 
-    def gap(R: Array, place: Array) -> Array:
-        return R - R0(place + gamma * R * t)
+    def layers(x: Array, t: float) -> tuple[Array, Array]:
+        R = simple_wave.layer(x, t, R0, speed, 1 + height)
+        return simple_wave.surface(material, x, R), R
 
-    return _root(gap, np.zeros_like(x), np.full_like(x, reach * (1 + 1e-9)), x)
+    name = "thick climbing wave" if material.Gamma else "climbing wave"
+    return ExactSolution(name, material, length, "periodic", until, layers, (0.0, length))
 
 
 def climbing_hump(
@@ -168,22 +152,8 @@ def climbing_hump(
     until: float,
     Sc: float = 0.5,
 ) -> ExactSolution:
-    """The climbing wave of R0 = 1 + height exp(-((x - length/2)/width)^2), periodic."""
-    R0 = partial(_hump, height=height, width=width, length=length)
-
-    def layers(x: Array, t: float) -> tuple[Array, Array]:
-        R = climbing_wave(x, t, R0, gamma, 1 + height)
-        return climbing_wave_surface(x, R, v, gamma, Sc), R
-
-    material = Material(v, 0.0, gamma, Sc)
-    return ExactSolution(
-        "climbing wave", material, length, "periodic", until, layers, (0.0, length)
-    )
-
-
-def breaking_time(steepest_rise: float, gamma: float) -> float:
-    """t* = 1/(gamma max R0'): when the climbing wave becomes vertical."""
-    return 1 / (gamma * steepest_rise) if steepest_rise > 0 else math.inf
+    """:func:`simple_wave_of_hump` in BCRE: R(x, t) = R0(x + gamma R t)."""
+    return simple_wave_of_hump(Material(v, 0.0, gamma, Sc), height, width, length, until)
 
 
 def tilted_climbing_wave(
@@ -206,7 +176,7 @@ def tilted_climbing_wave(
         def gap(start: Array, place: Array) -> Array:
             return start - R0(start) * climb - place
 
-        start = _root(gap, x, x + (1 + height) * climb + 1e-9, x)
+        start = simple_wave.root(gap, x, x + (1 + height) * climb + 1e-9, x)
         R = R0(start) * growth
         u = -excess * (x - v * t) - R - v / gamma * np.log(R)
         return u - Sc * x, R
@@ -263,10 +233,3 @@ def saturated_flow(
 def _hump(x: Array, height: float, width: float, length: float) -> Array:
     distance = (x - length / 2 + length / 2) % length - length / 2
     return 1 + height * np.exp(-((distance / width) ** 2))
-
-
-def _root(gap: Callable[[Array, Array], Array], low: Array, high: Array, x: Array) -> Array:
-    found = elementwise.find_root(
-        gap, (low, high), args=(x,), tolerances={"xatol": 0.0, "xrtol": 4e-16}
-    )
-    return np.asarray(found.x)

@@ -7,8 +7,8 @@ grains next to the static layer exchange (Bouchaud et al. 1994; Boutreux, Rapha√
 1998). A layer that has undershot zero exchanges nothing: a negative one would grow on any slope
 above repose.
 
-A term that a material does not have is None. None is a type of its own to the compiler, which then
-leaves the term out of the code instead of multiplying by zero.
+A term that a material does not have is None. Numba compiles a version of the code without it,
+instead of multiplying by zero.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def exchange(R, gradient, curvature, gamma, kappa, saturation):  # type: ignore[
     gradient, curvature: u_x and u_xx there, in any unit in which ``gamma gradient`` and
         ``kappa curvature`` are rates, 1/time.
     gamma: exchange rate.
-    kappa: curvature term, or None without it.
+    kappa: curvature term, or None.
     saturation: gamma/v_up, 1/length, or None for the linear law.
     """
     if kappa is None:

@@ -1,31 +1,31 @@
 r"""Explicit Runge-Kutta methods by their coefficients, and their stages without allocation.
 
-    k_i = dt f(y + sum_j a_ij k_j)        y(t + dt) = y + sum_i b_i k_i
+    k_i = dt f(t + c_i dt, y + sum_j a_ij k_j)        y(t + dt) = y + sum_i b_i k_i
 
 Every sum runs from its first term to its last, as in the formulae of py-pde, so that the compiled
-ones here give the same numbers to the bit.
+ones of :mod:`bcre_pde.sums` give the same numbers to the bit.
 """
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple, get_args
+from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
 
-import numba
 import numpy as np
-from numpy.typing import NDArray
 
-from bcre_pde.equation import BCRE
+from bcre_pde.problem import Array
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from bcre_pde.marched import Marched
+
 ExplicitMethod = Literal["runge-kutta", "RK45", "DOP853"]
 
 
 class Tableau(NamedTuple):
-    """a (s, s), strictly lower; b (s,) of the solution that is kept; times c (s,) of the stages."""
+    """a_ij (s, s), strictly lower; b_i (s,), of the solution that is kept; c_i (s,)."""
 
-    a: Array
-    b: Array
-    c: Array
+    increments: Array
+    weights: Array
+    nodes: Array
 
 
 FEHLBERG = Tableau(
@@ -64,14 +64,14 @@ def tableau(method: ExplicitMethod) -> Tableau:
 
     solver = getattr(integrate, method)
     stages = solver.n_stages
-    a = np.zeros((stages, stages))
+    increments = np.zeros((stages, stages))
     known = solver.A[:stages, :stages]
-    a[:, : known.shape[1]] = known
-    return Tableau(a, np.asarray(solver.B), np.asarray(solver.C[:stages]))
+    increments[:, : known.shape[1]] = known
+    return Tableau(increments, np.asarray(solver.B), np.asarray(solver.C[:stages]))
 
 
 class Step:
-    """One step of fixed length, in memory that is taken once.
+    """One step of fixed length, in memory that is allocated once.
 
     Parameters
     ----------
@@ -79,38 +79,18 @@ class Step:
     method: the coefficients.
     """
 
-    def __init__(self, equation: BCRE, method: Tableau) -> None:
+    def __init__(self, equation: Marched, method: Tableau) -> None:
         shape = equation.last_layers.shape
         self._equation = equation
         self._method = method
-        self._stage = np.empty(shape)
-        self.increments = np.empty((method.b.size, *shape))
+        self._stage = np.zeros(shape)
+        self.increments = np.zeros((method.weights.size, *shape))
 
     def __call__(self, layers: Array, t: float, dt: float, new: Array) -> None:
-        """Write y(t + dt) into ``new``; ``layers`` and ``new`` have shape (3, N)."""
-        a, b, c = self._method
-        k = self.increments
-        for i in range(b.size):
-            weighted_sum(layers, k, a[i], i, dt, self._stage)
-            self._equation.write_rate(self._stage, k[i], t + c[i] * dt)
-        weighted_sum(layers, k, b, b.size, dt, new)
-
-
-@numba.njit(cache=True, error_model="numpy")
-def weighted_sum(start, terms, weights, count, dt, out):  # type: ignore[no-untyped-def]
-    """out = start + sum of the first ``count`` weights times terms, but for weights of zero.
-
-    The last of the terms arrives as a rate and is multiplied by ``dt``, in place, first.
-    """
-    rows, cells = out.shape
-    for row in range(rows):
-        if count > 0:
-            for i in range(cells):
-                terms[count - 1, row, i] *= dt
-        for i in range(cells):
-            out[row, i] = start[row, i]
-        for k in range(count):
-            weight = weights[k]
-            if weight != 0.0:
-                for i in range(cells):
-                    out[row, i] += weight * terms[k, row, i]
+        """Write y(t + dt) into ``new``; ``layers`` and ``new`` have shape (3, ...)."""
+        increments, weights, nodes = self._method
+        add = self._equation.weighted_sum
+        for i in range(weights.size):
+            add(layers, self.increments, increments[i], i, dt, self._stage)
+            self._equation.write_rate(self._stage, self.increments[i], t + nodes[i] * dt)
+        add(layers, self.increments, weights, weights.size, dt, new)

@@ -1,20 +1,18 @@
 """Steps of fixed length, to measure where an explicit method stops being stable.
 
-LSODA and BDF have no place here: they are adaptive and, where it is stiff, implicit, so that no
-explicit boundary of stability belongs to them.
+LSODA and BDF have no place here: they are adaptive and, where the problem is stiff, implicit. No
+explicit bound of stability belongs to them.
 """
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
-from numpy.typing import NDArray
-from pde import CartesianGrid
 
-from bcre_pde.equation import BCRE, Material
-from bcre_pde.explicit import ExplicitMethod, Step, tableau
-from bcre_pde.solve import Ends
-
-Array = NDArray[np.float64]
+from bcre_pde.explicit import ExplicitMethod, tableau
+from bcre_pde.material import Material
+from bcre_pde.problem import SMALLEST_GRID, Array, Ends
 
 
 def take_fixed_steps(
@@ -28,7 +26,7 @@ def take_fixed_steps(
     ends: Ends = "periodic",
     u_foot: float = 0.0,
 ) -> tuple[Array, Array]:
-    """u and R after ``steps`` steps of length ``dt``, nothing adapted and nothing refused.
+    """u and R after ``steps`` steps of length ``dt``, in one compiled call; no step is adapted.
 
     Parameters
     ----------
@@ -47,17 +45,19 @@ def take_fixed_steps(
     ValueError
         naming the parameter, its value and what is allowed.
     """
+    from bcre_pde.equation import coefficients
+    from bcre_pde.line import fluxes
+
     for name, length in (("dx", dx), ("dt", dt)):
-        if not 0 < length < np.inf:
+        if not 0 < length < math.inf:
             raise ValueError(f"{name} = {length!r}: must be a finite number > 0")
     if steps < 0:
         raise ValueError(f"steps = {steps!r}: must be >= 0")
-    method_tableau = tableau(method)
-    grid = CartesianGrid([[0.0, dx * u.size]], u.size, periodic=ends == "periodic")
-    layers = BCRE.state(grid, u, R, u_foot).data
-    new = np.empty_like(layers)
-    step = Step(BCRE(material, grid), method_tableau)
-    for number in range(steps):
-        step(layers, number * dt, dt, new)
-        layers, new = new, layers
-    return layers[0].copy(), layers[1].copy()
+    if u.size < SMALLEST_GRID:
+        raise ValueError(f"cells = {u.size}: BCRE needs at least {SMALLEST_GRID} cells")
+    increments, weights, _ = tableau(method)
+    layers = np.array([u, R, np.zeros_like(R)], dtype=float)
+    layers[2, 0] = u_foot
+    bcre = coefficients(material, float(dx), ends == "periodic")
+    fluxes.march(layers, float(dt), steps, increments, weights, *bcre)
+    return layers[0], layers[1]

@@ -1,79 +1,51 @@
-r"""How wrong a solution is: grid refinement and the grid convergence index.
+r"""Grids twice as fine, and as fine again, until a solution's own error is small enough.
 
-On three grids, each ``ratio`` times finer than the one before, a measured quantity f gives the
-observed order p = ln(|f3 - f2|/|f2 - f1|)/ln(ratio) and the error estimate of the finest
-
-    GCI = Fs |f2 - f1|/(ratio^p - 1),   Fs = 1.25
-
-(Roache 1994; Celik et al. 2008), as an absolute error here.
+The error of each measured quantity is that of :mod:`bcre_pde.convergence`, from the changes between
+the last four grids. What the steps in time add is in the solution, its ``step_error``.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from bcre_pde.convergence import TRIPLES, changes, error_of_finest, jump_stands
 from bcre_pde.failure import SolveError
-from bcre_pde.solve import Problem, Solution, solve
+from bcre_pde.problem import Problem, Solution
+from bcre_pde.solve import solve
 
-Array = NDArray[np.float64]
+COARSEST = 50
+LEAST_GRIDS = TRIPLES + 2
 
-SAFETY = 1.25
-FORMAL_ORDER = 5.0
-LEAST_ORDER = 0.5
-"""Below this observed order the grids do not converge; the larger change is then what counts."""
-
-
-class GridConvergence(NamedTuple):
-    """Observed order (not limited) and the error estimate of the finest grid, absolute."""
-
-    order: float
-    error: float
-
-
-def grid_convergence_index(
-    fine: ArrayLike, medium: ArrayLike, coarse: ArrayLike, ratio: float = 2.0
-) -> GridConvergence:
-    """Grid convergence index of a number, or of a profile in the mean absolute value.
-
-    The order that enters the estimate is the observed one, limited to 0.5 <= p <= 5: above, it
-    would promise more than the scheme can give, below, the grids are not converging.
-
-    Parameters
-    ----------
-    fine, medium, coarse: the quantity on the three grids, numbers or arrays of one shape.
-    ratio: refinement ratio, > 1.
-    """
-    values = [np.asarray(value, dtype=float) for value in (fine, medium, coarse)]
-    last = float(np.mean(np.abs(values[1] - values[0])))
-    before = float(np.mean(np.abs(values[2] - values[1])))
-    if last == 0:
-        return GridConvergence(math.inf, 0.0)
-    order = math.log(before / last) / math.log(ratio) if before > 0 else -math.inf
-    limited = min(max(order, LEAST_ORDER), FORMAL_ORDER)
-    change = last if order >= LEAST_ORDER else max(last, before)
-    return GridConvergence(order, SAFETY * change / (ratio**limited - 1))
+Allowed = Callable[[Sequence[Any]], Iterable[float]]
 
 
 @dataclass(frozen=True)
-class Refined:
-    """The finest solution of a refinement, what was measured on it, and how sure that is.
+class Measured:
+    """A measured quantity with its error; ``order`` and what follows where grids were refined.
 
-    ``error`` is the grid convergence index in the measured unit (mean absolute value where the
-    measure is a profile), ``allowed`` what was asked for, ``cells`` the grids in turn.
+    Parameters
+    ----------
+    value: a number, or a profile.
+    error: absolute error, same unit; of a profile the mean absolute one.
+    order: observed order of convergence.
+    allowed: the error that was asked for.
+    cells: the grids in turn.
+    solution: on the finest of them.
+    jump: whether a jump stands, past which no more than first order is believed.
     """
 
-    solution: Solution
-    measured: Any
-    cells: tuple[int, ...]
-    order: float
+    value: Any
     error: float
-    allowed: float
+    order: float = math.nan
+    allowed: float = 0.0
+    cells: tuple[int, ...] = ()
+    solution: Any = None
+    jump: bool = False
 
     @property
     def resolved(self) -> bool:
@@ -81,44 +53,125 @@ class Refined:
         return self.error <= self.allowed
 
 
+def measure_refined(
+    measure_on: Callable[[int], tuple[Any, Sequence[Any]]],
+    grids: Iterable[int],
+    allowed: Allowed | None = None,
+) -> list[Measured]:
+    """Measure quantities on ever finer grids, until the error of each is as small as allowed.
+
+    Parameters
+    ----------
+    measure_on: function of a number of cells; returns a solution, and the quantities measured on
+        it: numbers or profiles, as many on every grid.
+    grids: numbers of cells, each twice the one before. At least three are needed for an error,
+        which is infinite on fewer; before the last, refinement ends on the fourth at the earliest.
+    allowed: function of the quantities on the finest grid so far; returns the error that is allowed
+        for each. Left out, all grids are measured and a failure on one is an error.
+
+    With ``allowed`` given, a grid on which the solver gives up ends the refinement; the first grid
+    must be solved.
+    """
+    ladder = _Ladder()
+    measured: list[Measured] = []
+    for grid in grids:
+        try:
+            solution, values = measure_on(grid)
+        except SolveError:
+            if not ladder.cells or allowed is None:
+                raise
+            break
+        ladder.add(grid, solution, values)
+        measured = ladder.measured(allowed if len(ladder.cells) > 2 else None)
+        enough = allowed is not None and len(ladder.cells) >= LEAST_GRIDS
+        if enough and all(quantity.resolved for quantity in measured):
+            break
+    return measured
+
+
+class _Ladder:
+    """The grids so far, with what was measured on each."""
+
+    def __init__(self) -> None:
+        self.cells: list[int] = []
+        self._history: list[Sequence[Any]] = []
+        self._solution: Any = None
+        self._jump = False
+
+    def add(self, cells: int, solution: Any, values: Sequence[Any]) -> None:
+        if isinstance(self._solution, Solution) and isinstance(solution, Solution):
+            self._jump = jump_stands(self._solution, solution)
+        self._solution = solution
+        self.cells.append(cells)
+        self._history.append(values)
+
+    def measured(self, allowed: Allowed | None) -> list[Measured]:
+        """The quantities on the finest grid with their errors."""
+        values = self._history[-1]
+        limits = [0.0] * len(values) if allowed is None else allowed(values)
+        quantities = zip(*self._history[-LEAST_GRIDS:], strict=True)
+        return [
+            self._of(list(on_grids), float(limit))
+            for on_grids, limit in zip(quantities, limits, strict=True)
+        ]
+
+    def _of(self, on_grids: list[Any], limit: float) -> Measured:
+        order, error = error_of_finest(changes(on_grids), jump=self._jump)
+        cells = tuple(self.cells)
+        return Measured(on_grids[-1], error, order, limit, cells, self._solution, self._jump)
+
+
+def solve_refined_each(
+    problem: Problem,
+    times: Sequence[float],
+    measure: Callable[[Solution], Sequence[Any]],
+    allowed: Allowed,
+    coarsest: int = COARSEST,
+    finest: int = 1600,
+    **options: Any,
+) -> list[Measured]:
+    """Double the grid until the error of each of several measured quantities is small enough.
+
+    Parameters
+    ----------
+    problem, times, options: as for :func:`bcre_pde.solve`.
+    measure: what is wanted of a solution: numbers, or profiles at fixed positions.
+    allowed: see :func:`measure_refined`; e.g. a tenth of the difference that is to be reported.
+    coarsest, finest: smallest and largest number of cells; at least three grids are solved.
+    """
+
+    def measure_on(cells: int) -> tuple[Solution, Sequence[Any]]:
+        solution = solve(problem, times, cells, **options)
+        return solution, measure(solution)
+
+    return measure_refined(measure_on, _doubled(coarsest, finest), allowed)
+
+
 def solve_refined(
     problem: Problem,
     times: Sequence[float],
     measure: Callable[[Solution], ArrayLike],
     allowed: Callable[[Any], float],
-    coarsest: int = 100,
+    coarsest: int = COARSEST,
     finest: int = 1600,
     **options: Any,
-) -> Refined:
-    """Double the grid until the error of what is measured is as small as allowed.
+) -> Measured:
+    """:func:`solve_refined_each` of a single quantity."""
+    (measured,) = solve_refined_each(
+        problem,
+        times,
+        lambda solution: [measure(solution)],
+        lambda values: [allowed(values[0])],
+        coarsest,
+        finest,
+        **options,
+    )
+    return measured
 
-    Parameters
-    ----------
-    problem, times, options: as for :func:`bcre_pde.solve`.
-    measure: what is wanted of a solution: a number, or a profile at fixed positions.
-    allowed: the error allowed for a measured value, same unit, e.g. a tenth of the difference
-        that is to be reported.
-    coarsest, finest: smallest and largest number of cells; at least three grids are solved.
 
-    A grid on which the solver gives up counts as the finest that can be had.
-    """
-    history: list[tuple[int, Solution, Any]] = []
-    cells = coarsest
-    order, error, limit = -math.inf, math.inf, 0.0
-    while cells <= finest or len(history) < 3:
-        try:
-            solution = solve(problem, times, cells, **options)
-        except SolveError:
-            if not history:
-                raise
-            break
-        history.append((cells, solution, measure(solution)))
-        cells *= 2
-        if len(history) >= 3:
-            coarse, medium, fine = (value for _, _, value in history[-3:])
-            order, error = grid_convergence_index(fine, medium, coarse)
-            limit = allowed(fine)
-            if error <= limit:
-                break
-    _, solution, measured = history[-1]
-    return Refined(solution, measured, tuple(n for n, _, _ in history), order, error, limit)
+def _doubled(coarsest: int, finest: int) -> Iterator[int]:
+    """``coarsest`` doubled up to ``finest``, and at least three numbers."""
+    cells, count = coarsest, 0
+    while cells <= finest or count < 3:
+        yield cells
+        cells, count = 2 * cells, count + 1

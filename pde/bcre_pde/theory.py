@@ -1,11 +1,11 @@
-r"""Closed forms of BCRE: frozen slopes, small waves, the scarp, and the stability of steps.
+r"""Closed forms of BCRE: frozen slopes, small waves, and the stability of steps.
 
 On a frozen slope S the rolling layer obeys R_t + v R_x = D R_xx + sigma R, sigma = gamma (S - Sc),
 and a point release of area M is
 
     R = M (4 pi D t)^(-1/2) exp(sigma t - (x - v t)^2/(4 D t))
 
-(Bouchaud et al. 1994). Growth at a fixed place, the speed of its edges, and Sd follow from it.
+(Bouchaud et al. 1994). Growth at a fixed place, the speed of the edges, and Sd follow from it.
 """
 
 from __future__ import annotations
@@ -17,14 +17,17 @@ from numpy.polynomial import polynomial
 from numpy.typing import ArrayLike, NDArray
 
 from bcre_pde.explicit import ExplicitMethod, tableau
-
-Array = NDArray[np.float64]
+from bcre_pde.material import Material
+from bcre_pde.problem import Array
 
 
 def second_critical_slope(v: float, D: float, gamma: float, Sc: float) -> float:
     """Sd = Sc + v^2/(4 D gamma): above it a frozen slope grows R at every fixed place.
 
     Infinite where D or gamma is zero (but v is not): everything is then carried away first.
+
+    >>> second_critical_slope(v=1.0, D=1.0, gamma=0.5, Sc=0.5)
+    1.0
     """
     if v == 0:
         return Sc
@@ -65,18 +68,8 @@ def surface_mode_rate(gamma: float, kappa: float, R0: float, wavenumber: float) 
     return complex(-kappa * R0 * wavenumber**2, gamma * R0 * wavenumber)
 
 
-def scarp_speed(v: float, gamma: float, H: float) -> float:
-    """c = gamma H - v: climb of a sharp scarp, H the jump of u across it.
-
-    Ahead of the scarp R = 0, behind it R* and u lower by H. Mass: the eroded c H equals the growth
-    c R* of the rolling layer plus what it carries away, v R*; the climb is c = gamma R*. So
-    R* = H - v/gamma.
-    """
-    return gamma * H - v
-
-
 def spectrum(
-    drift_number: float, spread_number: float, angles: ArrayLike, *, limited: bool = False
+    drift_number: float, spread_number: float, angles: ArrayLike, *, rough: bool = False
 ) -> NDArray[np.complex128]:
     r"""lambda dt of a Fourier mode e^(j theta i), i the cell, on a periodic grid.
 
@@ -84,9 +77,9 @@ def spectrum(
     f = (2 e^(-2 j theta) - 13 e^(-j theta) + 47 + 27 e^(j theta) - 3 e^(2 j theta))/60
     b = (4 cos 3 theta - 54 cos 2 theta + 540 cos theta - 490)/180
 
-    are the stencils of :mod:`bcre_pde.fluxes`, exact for a wave of more than six cells. A shorter
-    one is rough to the limiter, which moves the value on a face towards the cell upwind; on it,
-    f = 1, which damps more and so drives an explicit step out of its stable region earlier.
+    are the stencils of :mod:`bcre_pde.line.fluxes`, exact for a wave of more than six cells. A
+    shorter one is rough: the limiter moves the value on a face towards the cell upwind. At that
+    cell f = 1, which damps more, and so an explicit step leaves its stable region earlier.
 
     Parameters
     ----------
@@ -94,12 +87,12 @@ def spectrum(
         of the same with c = gamma R dt/dx.
     spread_number: s = D dt/dx^2 for R, kappa R dt/dx^2 for u.
     angles: theta = k dx, any shape.
-    limited: whether the limiter has moved every face value onto the cell upwind.
+    rough: whether the limiter has moved every face value onto the cell upwind.
     """
     theta = np.asarray(angles, dtype=float)
     wave = np.exp(1j * theta)
     smooth = (2 / wave**2 - 13 / wave + 47 + 27 * wave - 3 * wave**2) / 60
-    face = np.ones_like(wave) if limited else smooth
+    face = np.ones_like(wave) if rough else smooth
     bend = (4 * np.cos(3 * theta) - 54 * np.cos(2 * theta) + 540 * np.cos(theta) - 490) / 180
     return np.asarray(-drift_number * (1 - 1 / wave) * face + spread_number * bend)
 
@@ -107,20 +100,20 @@ def spectrum(
 def stability_polynomial(method: ExplicitMethod) -> Array:
     """Coefficients of P, constant first: one step of y' = lambda y is y P(lambda dt).
 
-    p_0 = 1 and p_k = b a^(k-1) 1 of the method's coefficients, by which 1/k! up to its order.
-    LSODA and BDF, adaptive and implicit, have none.
+    p_0 = 1 and p_k = b a^(k-1) 1, a and b as in :class:`bcre_pde.explicit.Tableau`; this is 1/k! up
+    to the order of the method. LSODA and BDF, adaptive and implicit, have no such polynomial.
     """
-    a, b, _ = tableau(method)
-    stage = np.ones(b.size)
+    increments, weights, _ = tableau(method)
+    stage = np.ones(weights.size)
     coefficients = [1.0]
-    for _ in range(b.size):
-        coefficients.append(float(b @ stage))
-        stage = a @ stage
+    for _ in range(weights.size):
+        coefficients.append(float(weights @ stage))
+        stage = increments @ stage
     return np.array(coefficients)
 
 
 ANGLES = np.linspace(0.0, math.pi, 4097)
-"""Waves looked at by default; those with theta < 0 have the conjugate spectrum."""
+"""Waves that are examined by default; those with theta < 0 have the conjugate spectrum."""
 
 ROUNDING = 1e-12
 """|P| above 1 by no more than this is rounding, as at theta = 0, where P = 1."""
@@ -133,7 +126,7 @@ def amplification_bound(
     method: ExplicitMethod,
     angles: ArrayLike = ANGLES,
     *,
-    limited: bool = False,
+    rough: bool = False,
 ) -> float:
     """Largest |P(lambda dt)| of a small wave of R or of u: growth of its amplitude in one step.
 
@@ -143,25 +136,40 @@ def amplification_bound(
         first two are those of the waves of R, the third of those of u (without curvature term).
     method: see :func:`bcre_pde.fixed_step.take_fixed_steps`.
     angles: theta = k dx; 2 pi m/N, m = 0 .. N/2, are all waves of a periodic grid of N cells.
-    limited: see :func:`spectrum`.
+    rough: see :func:`spectrum`.
     """
     P = stability_polynomial(method)
     rows = ((courant, diffusion_number), (climb_number, 0.0))
-    waves = [spectrum(*numbers, angles, limited=limited) for numbers in rows]
+    waves = [spectrum(*numbers, angles, rough=rough) for numbers in rows]
     return max(float(np.abs(polynomial.polyval(row, P)).max()) for row in waves)
 
 
 def stable(
     courant: float, diffusion_number: float, climb_number: float, method: ExplicitMethod
 ) -> bool:
-    """Whether |P(lambda dt)| <= 1 for all waves of R and of u, smooth and limited alike.
+    """Whether |P(lambda dt)| <= 1 for all waves of R and of u, smooth and rough alike.
 
-    The limited ones decide where drift and diffusion act together: rough data start to grow within
-    3 % of their boundary for "runge-kutta" and "RK45". For "DOP853" it promises too much where
-    drift or climb matters most: what the limiter does differs between its twelve stages, so that
-    the step is no polynomial in lambda, and rough data grow from a Courant number of 2.0 on
-    instead of 3.2.
+    Rough waves decide where drift and diffusion act together: for "runge-kutta" and "RK45" rough
+    data start to grow within 3 % of the predicted boundary. For "DOP853" the prediction is too
+    optimistic where drift or climb dominates. The limiter acts differently in its twelve stages, so
+    that the step is no polynomial in lambda: rough data grow from a Courant number of 2.0, not 3.2.
     """
     numbers = courant, diffusion_number, climb_number
-    bounds = (amplification_bound(*numbers, method, limited=limited) for limited in (False, True))
+    bounds = (amplification_bound(*numbers, method, rough=rough) for rough in (False, True))
     return max(bounds) <= 1 + ROUNDING
+
+
+def largest_explicit_step(material: Material, dx: float, largest_R: float) -> float:
+    """Step at which an explicit Runge-Kutta method of order 4 is still stable on a line.
+
+    On the negative real axis the spectra of the stencils reach 32/15 for the drift v/dx and the
+    climb gamma R/dx, 272/45 for the spreads D/dx^2 and kappa R/dx^2, and the method 2.78. A thick
+    layer drifts at dJ/dR = v + Gamma R.
+    """
+    from bcre_pde.exchange import exchanging  # late: slow to import
+
+    wet = exchanging.py_func(largest_R, material.saturation)
+    drift = max(material.v + material.Gamma * max(largest_R, 0.0), material.gamma * wet)
+    spread = max(material.D, material.kappa * wet)
+    rate = 32 / 15 * drift / dx + 272 / 45 * spread / dx**2
+    return 2.78 / rate if rate > 0 else math.inf

@@ -23,28 +23,47 @@ class Entry(NamedTuple):
 
 
 STUDIES = {
-    "paper_figures": Entry("validation.paper_figures", "The paper's figures in both models"),
+    "paper_figures": Entry("validation.paper_figures.study", "The paper's figures in both models"),
     "repose_return": Entry("validation.repose_return.study", "Return to the angle of repose"),
-    "roughness_decay": Entry("validation.roughness_decay", "Decay of roughness, mode by mode"),
+    "roughness_decay": Entry("validation.roughness_decay.study", "Decay of roughness by mode"),
     "random_roughness": Entry(
         "validation.random_roughness", "Decay of random roughness over 32 seeds"
     ),
     "uphill_propagation": Entry(
-        "validation.uphill_propagation", "Uphill propagation, one mechanism at a time"
+        "validation.uphill_propagation.study", "Uphill propagation, one mechanism at a time"
     ),
     "second_critical_angle": Entry(
         "validation.second_critical_angle.study", "The second critical angle"
+    ),
+    "avalanche_extent": Entry(
+        "validation.avalanche_extent", "What an avalanche moves: how much, how far, and when"
+    ),
+    "opening_angle": Entry(
+        "validation.opening_angle.study", "The angle at which an avalanche opens on a plane"
+    ),
+    "choices": Entry(
+        "validation.choices", "Do the verdicts stand when our own choices are halved and doubled?"
     ),
     "modified_equation": Entry(
         "verification.modified_equation",
         "How much of the difference is the automaton's own diffusion?",
     ),
-    "printed_rule": Entry("validation.printed_rule", "The printed rule, read in every way"),
+    "agreement_map": Entry(
+        "validation.agreement_map.study", "Where in its parameters does the automaton agree?"
+    ),
+    "sensitivity": Entry("validation.sensitivity", "Which parameter moves which property?"),
+    "avalanche_statistics": Entry(
+        "validation.avalanche_statistics.study", "Avalanches under slow driving: is there a scale?"
+    ),
+    "printed_rule": Entry("validation.printed_rule.study", "The printed rule, read in every way"),
     "one_variable": Entry(
         "validation.one_variable", "Control: which properties need the second layer?"
     ),
     "order_of_accuracy": Entry(
         "verification.order_of_accuracy", "Observed order of accuracy on exact solutions"
+    ),
+    "error_estimate": Entry(
+        "verification.error_estimate", "How often BCRE's own error estimate covers the true error"
     ),
     "speed_error": Entry("performance.speed_error", "Speed against error"),
     "scaling": Entry("performance.scaling", "Speed by size, and the real-time budget"),

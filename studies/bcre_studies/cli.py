@@ -2,198 +2,69 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 import threading
-from pathlib import Path
-from typing import Literal
+from typing import Any
 
 import click
 
+from bcre_studies.commands.advise import advise
+from bcre_studies.commands.check import check
+from bcre_studies.commands.listing import list_all
+from bcre_studies.commands.new import new
+from bcre_studies.commands.options import examples
+from bcre_studies.commands.report import report
+from bcre_studies.commands.run import run
+from bcre_studies.commands.show import show
+from bcre_studies.commands.speed import speed
+from bcre_studies.commands.study import run_studies
+from bcre_studies.commands.sweep import sweep
 from bcre_studies.system.one_line import one_line
+from bcre_studies.system.release import release
+
+COMMANDS = (run, new, show, advise, sweep, list_all, run_studies, report, check, speed)
+
+BROKEN_PIPE = 141
+"""The exit code of a program whose reader has gone, as a shell gives it."""
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+class _Commands(click.Group):
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command; a reader that has gone, as in ``bcre list | head -1``, ends it."""
+        try:
+            result = super().invoke(ctx)
+            sys.stdout.flush()
+        except BrokenPipeError:  # which click takes for a failure of exit code 1
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            sys.exit(BROKEN_PIPE)
+        return result
+
+
+@click.group(
+    cls=_Commands,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog=examples("bcre list", "bcre run figure2", "bcre run --help")
+    + "\n\n\b\nTab completion, a line for the shell's start-up file (bash; zsh and fish alike):\n"
+    + '  eval "$(_BCRE_COMPLETE=bash_source bcre)"',
+)
+@click.version_option(release(), prog_name="bcre", message="%(prog)s %(version)s")
 def app() -> None:
     """Does a two-layer cellular automaton of sandpiles do what the BCRE equations do?"""
 
 
-@app.command("list")
-def list_all() -> None:
-    """List the built-in scenes and the studies."""
-    from bcre_studies.catalog import STUDIES
-    from bcre_studies.scenes.listing import built_in_names, built_in_title
-
-    click.echo("Scenes (bcre run SCENE):")
-    for name in built_in_names():
-        click.echo(f"  {name:24}{built_in_title(name)}")
-    click.echo("Studies (bcre study NAME):")
-    for name, entry in STUDIES.items():
-        click.echo(f"  {name:24}{entry.title}")
-
-
-@app.command()
-@click.argument("scene")
-@click.option(
-    "--model", type=click.Choice(["ca", "pde", "both"]), default="both", show_default=True
-)
-@click.option(
-    "--set",
-    "assignments",
-    multiple=True,
-    metavar="KEY=VALUE",
-    help="Override a value, e.g. v=0.2 or rolling.0.width=1; may be repeated.",
-)
-@click.option(
-    "--frames",
-    type=click.IntRange(2, 10_000),
-    default=11,
-    show_default=True,
-    help="Frames, from t = 0 to the end.",
-)
-@click.option(
-    "--out", type=click.Path(file_okay=False, path_type=Path), help="Folder  [default: out/SCENE]"
-)
-def run(
-    scene: str,
-    model: Literal["ca", "pde", "both"],
-    assignments: tuple[str, ...],
-    frames: int,
-    out: Path | None,
-) -> None:
-    """Run SCENE, a built-in name or a TOML file; write profiles.csv and summary.json."""
-    from bcre_studies.scenes.scene import load
-    from bcre_studies.system.files import require_writable
-
-    folder = Path("out") / Path(scene).stem if out is None else out
-    require_writable("--out", folder, ("profiles.csv", "summary.json"))
-    loaded = load(scene, assignments)  # what is refused here need not wait for the solvers
-    from bcre_studies.running.run import run_scene, write_run
-
-    summary = write_run(run_scene(loaded, model, frames), folder)
-    if model != "pde" and loaded.material.kappa > 0 and loaded.automaton.scheme == "upwind":
-        click.echo(
-            "note: the paper's rule has no curvature term; the automaton runs without "
-            f"kappa = {loaded.material.kappa!r} (automaton.scheme calibrated or limited takes it)",
-            err=True,
-        )
-    for name, numbers in summary.items():
-        facts = ", ".join(f"{key} {_short(value)}" for key, value in numbers.items())
-        click.echo(f"{name}: {facts}")
-    click.echo(f"wrote {folder / 'profiles.csv'} and {folder / 'summary.json'}")
-
-
-@app.command()
-@click.argument("scene")
-@click.option("--tolerance", type=float, default=0.05, show_default=True, help="Relative error.")
-@click.option(
-    "--observable",
-    default="R",
-    show_default=True,
-    help="R, h, slope, roughness, front, eroded, reach or top.",
-)
-@click.option("--budget", metavar="TIME", help="Time per frame, e.g. 16ms: as accurate as it lets.")
-@click.option("--frames", type=click.IntRange(2, 10_000), default=11, show_default=True)
-@click.option("--set", "assignments", multiple=True, metavar="KEY=VALUE", help="As for bcre run.")
-@click.option(
-    "--out",
-    type=click.Path(dir_okay=False, path_type=Path),
-    help="Scene to be run  [default: out/SCENE-advice.toml]",
-)
-def advise(
-    scene: str,
-    tolerance: float,
-    observable: str,
-    budget: str | None,
-    frames: int,
-    assignments: tuple[str, ...],
-    out: Path | None,
-) -> None:
-    """Which model and cells answer SCENE to a tolerance at the least cost; by short pilots."""
-    from bcre_studies.advisor.advice_text import answer
-    from bcre_studies.advisor.question import Question, seconds_of
-    from bcre_studies.scenes.scene import load
-
-    seconds = None if budget is None else seconds_of(budget)
-    question = Question(load(scene, assignments), tolerance, observable, seconds, frames)
-    path = Path("out") / f"{Path(scene).stem}-advice.toml" if out is None else out
-    click.echo(answer(question, Path(scene).stem, path))
-
-
-@app.command("study")
-@click.argument("names", nargs=-1, required=True, metavar="NAME...")
-def run_studies(names: tuple[str, ...]) -> None:
-    """Run studies (see bcre list), write their reports and print their conclusions."""
-    from bcre_studies.catalog import STUDIES
-
-    for name in names:
-        if name not in STUDIES:
-            allowed = ", ".join(STUDIES)
-            raise click.UsageError(f"NAME = {name!r}: must be one of {allowed}")
-    from bcre_studies.publishing.write import write_studies
-
-    for finding in write_studies(names):
-        for claim in finding.claims:
-            click.echo(f"{finding.name}: {claim.statement} {claim.verdict}: {claim.evidence}.")
-
-
-@app.command()
-def report() -> None:
-    """Run all studies and write reports/ with its index."""
-    from bcre_studies.publishing.write import write_all
-    from bcre_studies.system.files import REPORTS
-
-    claims = [claim for finding in write_all() for claim in finding.claims]
-    click.echo(f"{len(claims)} claims judged; read {REPORTS / 'README.md'}")
-
-
-@app.command()
-@click.option(
-    "--record", is_flag=True, help="Renew the committed record in reports/speed (some minutes)."
-)
-def speed(record: bool) -> None:
-    """Measure speed on this machine into reports/local (a minute)."""
-    from bcre_studies.performance.record.page import write
-    from bcre_studies.performance.record.record import LOCAL, RECORD, measure_local, measure_record
-    from bcre_studies.performance.rivals import fipy_solver
-
-    if record and not fipy_solver.available():
-        click.echo("FiPy is not installed and takes no part (make bench installs it)", err=True)
-    folder = RECORD if record else LOCAL
-    write(folder, measure_record() if record else measure_local())
-    click.echo(f"wrote {folder / 'README.md'}")
-
-
-@app.command()
-def check() -> None:
-    """Judge all claims again; exit 1 where a verdict differs from the recorded one."""
-    from bcre_studies.catalog import STUDIES
-    from bcre_studies.publishing.write import find, recorded_verdicts, verdict_table
-
-    recorded = recorded_verdicts()
-    verdicts = verdict_table([find(name) for name in STUDIES])
-    both = verdicts.merge(
-        recorded, how="outer", on=["study", "claim"], suffixes=("", "_recorded")
-    ).fillna("(none)")
-    differs = both["verdict"] != both["verdict_recorded"]
-    for row, differing in zip(both.itertuples(), differs, strict=True):
-        before = f", recorded as: {row.verdict_recorded}" if differing else ""
-        click.echo(f"{row.study}: {row.claim}: {row.verdict}{before}")
-    click.echo(f"{len(both)} claims, {differs.sum()} differ from reports/verdicts.csv")
-    if differs.any():
-        sys.exit(1)
-
-
-def _short(value: object) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
+for command in COMMANDS:
+    app.add_command(command)
 
 
 def main() -> None:
     """Run the command; bad input ends in one line on standard error and exit 2."""
     if threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends the workers too
+    _show_every_name()
     try:
-        app(standalone_mode=False)
+        app(prog_name="bcre", standalone_mode=False)
     except click.exceptions.NoArgsIsHelpError as error:
         click.echo(error.format_message())
     except click.ClickException as error:
@@ -205,6 +76,13 @@ def main() -> None:
         _refuse(str(error))
     except MemoryError as error:
         _refuse(f"not enough memory: {error}")
+
+
+def _show_every_name() -> None:
+    """Let a terminal show what it can of a title or a path, and escapes for the rest."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
 
 
 def _refuse(message: str) -> None:

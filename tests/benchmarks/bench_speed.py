@@ -8,7 +8,7 @@ import pytest
 
 import bcre_ca
 from bcre_pde import BCRE
-from bcre_studies.models.simulate import problem_of
+from bcre_studies.models.bcre import problem_of
 from bcre_studies.performance.rivals import (
     fipy_solver,
     method_of_lines,

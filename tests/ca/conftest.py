@@ -6,48 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import strategies as st
 
-from bcre_ca import Pile, Rule, largest_stable_step, step
+from bcre_ca import Pile, Rule, advance, step
 
-ORDERS = ("synchronous", "right", "left")
-
-
-@st.composite
-def _layers(draw, cells):
-    surface = st.floats(-50, 50, allow_subnormal=False)
-    rolling = st.one_of(st.just(0.0), st.floats(1e-200, 20))
-    h = draw(st.lists(surface, min_size=cells, max_size=cells))
-    R = draw(st.lists(rolling, min_size=cells, max_size=cells))
-    return np.array(h), np.array(R)
-
-
-@st.composite
-def _cases(draw, orders=ORDERS, signs=("consistent", "printed"), part_of_bound=0.99, most=40):
-    """Layers, ends, and a rule whose dt is a part of the largest stable one."""
-    h, R = draw(_layers(draw(st.integers(1, most))))
-    ends = draw(st.sampled_from(["open", "periodic"]))
-    coefficient = st.one_of(st.just(0.0), st.floats(1e-3, 3))
-    rule = Rule(
-        v=draw(coefficient),
-        D=draw(coefficient),
-        gamma=draw(st.one_of(st.just(0.0), st.floats(1e-3, 1))),
-        Sc=draw(st.floats(0, 2)),
-        d=draw(st.floats(0.1, 3)),
-        dt=1.0,
-        sign=draw(st.sampled_from(signs)),
-        order=draw(st.sampled_from(orders)),
-    )
-    largest = min(largest_stable_step(Pile(h, R), rule, ends), 10.0)
-    return h, R, replace(rule, dt=part_of_bound * largest), ends
-
-
-@pytest.fixture(scope="session")
-def cases():
-    """Strategy for (h, R, rule, ends), see :func:`_cases`."""
-    return _cases
+ALL = ("no D", "kappa", "v_up", "dry")
 
 
 class Form(NamedTuple):
-    """What decides which kernel is compiled: scheme or order, the terms present, the ends."""
+    """What decides which machine code runs: the scheme, the terms present, the ends."""
 
     scheme: str
     terms: tuple[str, ...]
@@ -57,44 +22,43 @@ class Form(NamedTuple):
         return "-".join([self.scheme, *self.terms, self.ends])
 
     @property
-    def in_place(self):
-        return self.scheme in ("right", "left")
+    def synchronous(self):
+        return self.scheme != "in place"
 
-    def options(self, kappa, v_up, dry):
-        """The parameters of a rule of this form that decide on its kernel, D only where it is 0."""
+    def options(self, kappa=0.02, v_up=1.5, dry=1e-3, order="right"):
+        """The parameters that give a rule this form. Of D only that it is absent."""
         values = {"kappa": kappa, "v_up": v_up, "dry": dry, "no D": 0.0}
         chosen = {{"no D": "D"}.get(term, term): values[term] for term in self.terms}
-        return chosen | ({"order": self.scheme} if self.in_place else {"scheme": self.scheme})
+        return chosen | ({"scheme": self.scheme} if self.synchronous else {"order": order})
 
 
-# Each term meets each scheme and each kind of ends; a form takes a second or two to compile.
+# Each term meets each scheme and both kinds of ends; a form takes two seconds or more to compile.
 FORMS = (
     Form("upwind", (), "open"),
     Form("upwind", (), "periodic"),
-    Form("upwind", ("no D", "kappa", "dry"), "open"),
-    Form("upwind", ("v_up", "dry"), "periodic"),
-    Form("calibrated", (), "open"),
-    Form("calibrated", ("no D", "kappa", "v_up", "dry"), "periodic"),
-    Form("limited", ("no D", "kappa", "v_up", "dry"), "open"),
-    Form("limited", ("kappa",), "periodic"),
-    Form("right", ("dry",), "periodic"),
-    Form("left", ("no D", "dry"), "open"),
+    Form("upwind", ALL, "open"),
+    Form("calibrated", ("kappa", "v_up", "dry"), "open"),
+    Form("calibrated", ("no D", "dry"), "periodic"),
+    Form("limited", ALL, "open"),
+    Form("limited", ("kappa", "v_up"), "periodic"),
+    Form("in place", ("no D",), "open"),
+    Form("in place", ("dry",), "periodic"),
 )
 
 
 def pytest_generate_tests(metafunc):
-    """A test that takes ``form`` runs for all forms, one that takes ``synchronous`` for its own."""
-    if "form" in metafunc.fixturenames:
-        metafunc.parametrize("form", FORMS, ids=str)
-    if "synchronous" in metafunc.fixturenames:
-        chosen = [form for form in FORMS if not form.in_place]
-        metafunc.parametrize("synchronous", chosen, ids=str)
+    """``form`` stands for all forms, ``synchronous``, ``open_form``, ``freezable`` for some.
 
-
-@pytest.fixture(scope="session")
-def forms():
-    """All of them: printed ones, then those of the calibrated, the limited, the in-place rules."""
-    return FORMS
+    The scope lets pytest run the tests of a form after each other, so that one worker compiles it.
+    """
+    chosen = {
+        "form": FORMS,
+        "synchronous": [form for form in FORMS if form.synchronous],
+        "open_form": [form for form in FORMS if form.ends == "open"],
+        "freezable": [FORMS[1], FORMS[2]],
+    }
+    for name in chosen.keys() & set(metafunc.fixturenames):
+        metafunc.parametrize(name, chosen[name], ids=str, scope="session")
 
 
 @st.composite
@@ -104,6 +68,7 @@ def _rules(draw, form):
         kappa=draw(st.floats(1e-3, 1)),
         v_up=draw(st.floats(1e-2, 10)),
         dry=10 ** draw(st.floats(-12, -1)),
+        order=draw(st.sampled_from(["right", "left"])),
     )
     return Rule(
         v=draw(coefficient),
@@ -116,12 +81,6 @@ def _rules(draw, form):
     )
 
 
-@pytest.fixture(scope="session")
-def rules():
-    """Strategy for the rules of a form; their dt is 1 and still to be chosen."""
-    return _rules
-
-
 @st.composite
 def _piles(draw, cells, rule):
     """Spiky layers about the repose line; wet in one stretch, which may pass the ends."""
@@ -132,12 +91,6 @@ def _piles(draw, cells, rule):
     wet = draw(st.integers(0, cells))
     R[wet:] = 0.0
     return h, np.roll(R, draw(st.integers(0, cells - 1)))
-
-
-@pytest.fixture(scope="session")
-def piles():
-    """Strategy for the layers of so many cells under a rule."""
-    return _piles
 
 
 def _bound(h, R, rule, ends):
@@ -155,21 +108,100 @@ def _bound(h, R, rule, ends):
     )
 
 
+def _gentle(rule, h, R, ends):
+    """The rule with a dt in which no layer grows by more than a third a step."""
+    d, drops = rule.d, np.abs(np.diff(h, append=h[0])) + abs(rule.Sc) * rule.d * h.size
+    growth = rule.gamma * drops.max() / d + 2 * rule.kappa * drops.max() / d**2
+    largest = _bound(h, R, rule, ends)
+    return replace(rule, dt=min(0.5 * largest, 0.3 / growth if growth > 0 else 10.0, 10.0))
+
+
+def _plain_march(h, R, rule, steps, ends, frozen=None):
+    lost = []
+    for _ in range(steps):
+        h, R, outflow = step(h, R, rule, ends, frozen)
+        lost.append(outflow)
+    return h, R, math.fsum(lost)
+
+
+def _moments_of_one_grain(rule, steps=60, cells=401):
+    """Mean displacement and half the variance of R per unit time, R released in one inner cell."""
+    h, R = np.zeros(cells), np.zeros(cells)
+    R[150] = 1.0
+    _, R, _ = _plain_march(h, R, rule, steps, "open")
+    distance, time = rule.d * (np.arange(cells) - 150), steps * rule.dt
+    mean = float(distance @ R)
+    return mean / time, (float(distance**2 @ R) - mean**2) / (2 * time)
+
+
+def _growth_at_a_fixed_cell(rule, excess):
+    """From ln R = a + rate t - ln(t)/2 + c/t at three times; R of 1e-250 leaves the surface."""
+    h = -(rule.Sc + excess) * rule.d * np.arange(900)
+    R = np.zeros(900)
+    R[600] = 1e-250
+    pile, times, logs = Pile(h, R), [], []
+    for steps in (600, 300, 300):
+        pile = advance(pile, rule, steps)
+        times.append(pile.t)
+        logs.append(math.log(pile.R[600]) + math.log(pile.t) / 2)
+    assert (pile.h == h)[:601].all()
+    return np.linalg.solve(np.array([[1.0, t, 1 / t] for t in times]), logs)[1]
+
+
+def _figure_1():
+    x = np.arange(100) + 0.5
+    return Pile(3.7 * (100 - x), np.exp(-(((x - 85) / 3) ** 2)))
+
+
+@pytest.fixture(scope="session")
+def forms():
+    """All of them, see above."""
+    return FORMS
+
+
+@pytest.fixture(scope="session")
+def rules():
+    """Strategy for the rules of a form; their dt is 1 and still to be chosen."""
+    return _rules
+
+
+@pytest.fixture(scope="session")
+def piles():
+    """Strategy for the layers of so many cells under a rule."""
+    return _piles
+
+
 @pytest.fixture(scope="session")
 def bound():
-    """The largest stable step of (h, R, rule, ends), found without any compiled code."""
+    """The largest stable step of (h, R, rule, ends), found without compiled code."""
     return _bound
 
 
-def _plain_march(h, R, rule, steps, ends):
-    lost = []
-    for _ in range(steps):
-        h, R, outflow = step(h, R, rule, ends)
-        lost.append(outflow)
-    return h, R, math.fsum(lost)
+@pytest.fixture(scope="session")
+def gentle():
+    """(rule, h, R, ends) -> the rule with a short step."""
+    return _gentle
 
 
 @pytest.fixture(scope="session")
 def plain_march():
     """(h, R, rule, steps, ends) -> h, R and the sum of what left, by the plain step."""
     return _plain_march
+
+
+@pytest.fixture(scope="session")
+def moments_of_one_grain():
+    """rule -> drift and diffusion of R on a level, frozen slope."""
+    return _moments_of_one_grain
+
+
+@pytest.fixture(scope="session")
+def growth_at_a_fixed_cell():
+    """(rule, excess) -> growth rate of R where it was released, on a frozen slope Sc + excess."""
+    return _growth_at_a_fixed_cell
+
+
+@pytest.fixture
+def figure_1():
+    """The start of the paper's figure 1: a pulse at the foot of a steep slope."""
+    return _figure_1()

@@ -12,7 +12,7 @@ RULE = Rule(v=0.2, D=0.1, gamma=0.05, Sc=0.7, d=0.5, dt=0.2)
 
 
 def with_terms(form, **changes):
-    return replace(RULE, **form.options(kappa=0.03, v_up=1.5, dry=1e-3), **changes)
+    return replace(RULE, **form.options(kappa=0.03), **changes)
 
 
 def test_uniform_layer_on_the_repose_slope_is_steady_to_rounding(synchronous):

@@ -1,12 +1,26 @@
 import math
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 from pde import CartesianGrid
 
-from bcre_pde import BCRE, Material
+from bcre_pde import (
+    Material,
+    Problem,
+    SolveError,
+    largest_explicit_step,
+    solve,
+    solve_refined,
+)
+from bcre_pde.equation import BCRE, coefficients
+from bcre_pde.explicit import FEHLBERG
+from bcre_pde.line import fluxes
+from bcre_pde.line.marched import MarchedOnLine
 
 MATERIAL = {"v": 1.0, "D": 0.2, "gamma": 0.3, "Sc": 0.5, "kappa": 0.1}
+CLASSICAL = np.diag([0.5, 0.5, 1.0], -1), np.array([1, 2, 2, 1]) / 6
 
 
 @pytest.mark.parametrize("name", ["v", "D", "gamma", "Sc", "kappa"])
@@ -64,33 +78,86 @@ def test_evolution_rate_leaves_the_state_alone_and_is_counted():
     [({"D": 0.0, "kappa": 0.0}, 1.0), ({"v": 0.01}, 1.0), ({"v": 0.0}, 40.0), ({}, 10.0)],
 )
 def test_largest_explicit_step_keeps_every_small_wave_stable(changes, largest_R):
-    """Rounding-size noise on a uniform layer must not grow in classical Runge-Kutta steps."""
-    material = Material(**(MATERIAL | changes))
-    grid = CartesianGrid([[0, 20]], 40, periodic=True)
-    equation = BCRE(material, grid)
-    dt = equation.largest_explicit_step(largest_R)
-    rng = np.random.default_rng(1)
-    noise = 1e-9
-    state = BCRE.state(
-        grid, noise * rng.uniform(-1, 1, 40), largest_R + noise * rng.uniform(-1, 1, 40)
-    )
-
-    def slope(data):
-        probe = state.copy()
-        probe.data[...] = data
-        return equation.evolution_rate(probe).data.copy()
-
-    y = state.data.copy()
-    for _ in range(200):
-        k1 = slope(y)
-        k2 = slope(y + dt / 2 * k1)
-        k3 = slope(y + dt / 2 * k2)
-        k4 = slope(y + dt * k3)
-        y = y + dt / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
-    assert np.abs(y[0]).max() < 10 * noise
-    assert np.abs(y[1] - largest_R).max() < 10 * noise
+    """Rounding-size noise on a uniform layer must not grow in steps of a method of order 4."""
+    material, noise = Material(**(MATERIAL | changes)), 1e-9
+    u, ripple = noise * np.random.default_rng(1).uniform(-1, 1, (2, 40))
+    dt = largest_explicit_step(material, 0.5, largest_R)
+    for increments, weights in (CLASSICAL, FEHLBERG[:2]):
+        layers = np.array([u, largest_R + ripple, np.zeros(40)])
+        bcre = coefficients(material, 0.5, True)
+        fluxes.march(layers, dt, 200, increments, weights, *bcre)
+        assert np.abs(layers[0]).max() < 10 * noise
+        assert np.abs(layers[1] - largest_R).max() < 10 * noise
 
 
 def test_equation_that_moves_nothing_has_no_largest_step():
-    grid = CartesianGrid([[0, 1]], 8)
-    assert BCRE(Material(0.0, 0.0, 0.0, 0.5), grid).largest_explicit_step(9.0) == math.inf
+    assert largest_explicit_step(Material(0.0, 0.0, 0.0, 0.5), 1.0, 9.0) == math.inf
+    grid = BCRE.grid(20.0, 40, "open")
+    equation = BCRE(Material(**MATERIAL), grid)
+    assert equation.largest_explicit_step(9.0) == largest_explicit_step(
+        Material(**MATERIAL), 0.5, 9.0
+    )
+
+
+class Carried(MarchedOnLine):
+    """dR/dt + v dR/dx = 0, dh/dt = 0 by upwind differences: a model of a few lines."""
+
+    def rate(self, layers, out):
+        R = layers[1]
+        before = np.roll(R, 1)
+        if not self.periodic:
+            before[0] = 0.0
+        out[...] = 0.0
+        out[1] = -self.material.v * (R - before) / self.dx
+        if not self.periodic:
+            out[2, -1] = self.material.v * R[-1] / (self.cells * self.dx)
+
+    def largest_explicit_step(self, largest_R):
+        return self.dx / self.material.v
+
+
+@pytest.mark.parametrize("ends", ["open", "periodic"])
+@pytest.mark.parametrize("method", ["runge-kutta", "RK45", "BDF"])
+def test_another_model_is_solved_like_bcre(method, ends):
+    """Its layer moves by 4 and keeps its area, and its surface stays as it is."""
+
+    def initial(x):
+        return 3 - 0.4 * x, np.exp(-(((x - 10) / 3) ** 2))
+
+    problem = Problem(initial, Material(**MATERIAL), 40.0, ends)
+    solution = solve(problem, [0.0, 4.0], 200, method, equation=Carried)
+    mass = solution.mass() + solution.outflow
+    assert mass == pytest.approx(np.full(2, mass[0]), rel=1e-12)
+    assert np.ptp(solution.u, axis=0).max() < 1e-13
+    centres = solution.R @ solution.x / solution.R.sum(axis=1)
+    assert np.diff(centres)[0] == pytest.approx(4.0, rel=1e-4)
+    refined = solve_refined(
+        problem, [4.0], lambda s: s.R[-1].max(), lambda value: 0.1, 50, equation=Carried
+    )
+    assert refined.order == pytest.approx(1, abs=0.3)
+
+
+def test_failure_of_another_model_names_its_cell():
+    class Broken(Carried):
+        def rate(self, layers, out):
+            super().rate(layers, out)
+            out[1, 7] = math.nan
+
+    problem = Problem(lambda x: (-0.5 * x, np.ones_like(x)), Material(**MATERIAL), 10.0)
+    with pytest.raises(SolveError, match=r"in cell 7 \(x = 3.75\)"):
+        solve(problem, [1.0], 20, equation=Broken)
+
+
+LIGHT = """
+import sys, bcre_pde, bcre_pde.exact, bcre_pde.explicit, bcre_pde.fixed_step, bcre_pde.theory
+bcre_pde.Problem(lambda x: (x, x), bcre_pde.Material(0.1, 0.1, 0.01, 0.5), 100.0)
+bcre_pde.theory.stable(0.1, 0.1, 0.1, "runge-kutta")
+print(*{"pde", "numba", "pandas", "matplotlib"} & set(sys.modules))
+"""
+
+
+def test_what_needs_no_solver_imports_neither_py_pde_nor_numba():
+    loaded = subprocess.run(
+        [sys.executable, "-c", LIGHT], capture_output=True, check=True, text=True
+    )
+    assert loaded.stdout.split() == []

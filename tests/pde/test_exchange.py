@@ -6,7 +6,8 @@ import pytest
 from numba import types
 from numba.core.runtime import _nrt_python, rtsys
 
-from bcre_pde import Material, exchange, fluxes
+from bcre_pde import Material, exchange
+from bcre_pde.line import fluxes
 
 law = exchange.exchange.py_func
 GAMMA, KAPPA, SATURATION = 0.7, 0.3, 1.75

@@ -6,8 +6,9 @@ from pde import CartesianGrid
 from pde.solvers import RungeKuttaSolver
 from scipy import integrate
 
-from bcre_pde import BCRE, Material
+from bcre_pde import Material
 from bcre_pde.bounded import BoundedRungeKutta, layer_scale
+from bcre_pde.equation import BCRE
 from bcre_pde.explicit import FEHLBERG, FEHLBERG_ERROR, Step, tableau
 
 LENGTH, CELLS = 20.0, 50

@@ -8,7 +8,8 @@ import warnings
 import numpy as np
 import pytest
 
-from bcre_pde import Material, Problem, SolveError, fluxes, solve
+from bcre_pde import Material, Problem, SolveError, solve
+from bcre_pde.line import fluxes
 
 METHODS = ["runge-kutta", "RK45", "DOP853", "LSODA", "BDF"]
 LENGTH, CELLS, REPOSE = 20.0, 40, 0.5

@@ -6,6 +6,8 @@ from numpy.polynomial import polynomial
 from scipy.optimize import bisect
 
 from bcre_pde import Material, Problem, largest_explicit_step, solve, theory
+from bcre_pde.equation import BCRE
+from bcre_pde.explicit import Step, tableau
 from bcre_pde.fixed_step import take_fixed_steps
 
 METHODS = ["runge-kutta", "RK45", "DOP853"]
@@ -79,21 +81,21 @@ def test_wave_of_few_cells_is_limited_towards_the_cell_upwind():
     P = theory.stability_polynomial("RK45")
     found = steps_of_a_wave("RK45", (0.2, 0, 0), zigzag, 1)[0] / zigzag[0]
     smooth = polynomial.polyval(theory.spectrum(0.2, 0.0, math.pi), P).real
-    limited = polynomial.polyval(theory.spectrum(0.2, 0.0, math.pi, limited=True), P).real
-    assert found == pytest.approx(limited, rel=1e-12)
+    upwind = polynomial.polyval(theory.spectrum(0.2, 0.0, math.pi, rough=True), P).real
+    assert found == pytest.approx(upwind, rel=1e-12)
     assert abs(found - smooth) > 0.1
 
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
 @pytest.mark.parametrize("method", ["runge-kutta", "RK45"])
 def test_rough_layers_grow_from_the_predicted_boundary_on(method, direction):
-    """2 % of DIRECTIONS below the boundary of limited waves nothing grows, 3 % above all does."""
+    """2 % below the boundary of rough waves nothing grows, 3 % above everything does."""
 
     def numbers(size):
         return tuple(size * part for part in DIRECTIONS[direction])
 
     def excess(size):
-        return theory.amplification_bound(*numbers(size), method, limited=True) - 1 - 1e-9
+        return theory.amplification_bound(*numbers(size), method, rough=True) - 1 - 1e-9
 
     boundary = bisect(excess, 0.05, 10.0)
     for seed in range(3):
@@ -104,7 +106,7 @@ def test_rough_layers_grow_from_the_predicted_boundary_on(method, direction):
         assert not np.abs(above).max() < 10 * np.abs(noise).max()
 
 
-def test_prediction_needs_the_limited_waves_where_drift_and_diffusion_act_together():
+def test_prediction_needs_the_rough_waves_where_drift_and_diffusion_act_together():
     """At this step every smooth wave decays, and rough layers grow fourfold all the same."""
     numbers = (0.98, 0.294, 0.0)
     assert theory.amplification_bound(*numbers, "runge-kutta") == pytest.approx(1)
@@ -158,6 +160,23 @@ def test_short_fixed_steps_reach_the_adaptive_solution(method, ends):
     assert found[1] == pytest.approx(reference.R[0], abs=1e-8)
 
 
+@pytest.mark.parametrize("ends", ["open", "periodic"])
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("more", [{}, {"kappa": 0.05, "v_up": 2.0}])
+def test_compiled_steps_are_those_of_the_solvers_to_the_bit(method, ends, more):
+    material = Material(1.0, 0.2, 0.3, 0.5, **more)
+    rng = np.random.default_rng(2)
+    u, R = rng.uniform(-1, 1, 40), rng.uniform(0, 1, 40)
+    grid = BCRE.grid(20.0, 40, ends)
+    layers, new = BCRE.state(grid, u, R, 0.3).data, np.empty((3, 40))
+    step = Step(BCRE(material, grid), tableau(method))
+    for number in range(7):
+        step(layers, number * 0.1, 0.1, new)
+        layers, new = new.copy(), new
+    found = take_fixed_steps(material, u, R, 0.5, 0.1, 7, method, ends, 0.3)
+    assert np.array_equal(found, layers[:2])
+
+
 def test_no_step_leaves_the_layers_alone():
     u, R = rough(0), np.abs(rough(1))
     found = take_fixed_steps(Material(1.0, 0.2, 0.3, 0.5), u, R, 1.0, 1.0, 0)
@@ -171,9 +190,10 @@ def test_no_step_leaves_the_layers_alone():
         ({"dx": math.nan}, r"^dx = nan: must be a finite number > 0"),
         ({"steps": -1}, r"^steps = -1: must be >= 0"),
         ({"method": "BDF"}, r"^method = 'BDF': must be explicit"),
+        ({"u": np.zeros(7)}, r"^cells = 7: BCRE needs at least 8 cells"),
     ],
 )
 def test_bad_argument_is_refused_with_its_name_and_value(options, message):
-    arguments = {"dx": 1.0, "dt": 0.1, "steps": 1} | options
+    arguments = {"u": np.zeros(8), "R": np.ones(8), "dx": 1.0, "dt": 0.1, "steps": 1} | options
     with pytest.raises(ValueError, match=message):
-        take_fixed_steps(Material(1.0, 0.2, 0.3, 0.5), np.zeros(8), np.ones(8), **arguments)
+        take_fixed_steps(Material(1.0, 0.2, 0.3, 0.5), **arguments)

@@ -4,7 +4,8 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bcre_pde import fluxes
+from bcre_pde.line import fluxes
+from bcre_pde.stencils import face_value
 
 HALF = sp.Rational(1, 2)
 
@@ -73,7 +74,7 @@ def test_negative_layer_exchanges_nothing():
 def test_face_value_of_monotone_data_lies_between_its_neighbours(steps, start):
     values = start + np.cumsum([0.0, *steps])
     for five in (values, values[::-1]):
-        face = fluxes._face_value(*five)
+        face = face_value(*five)
         low, high = sorted(five[2:4])
         assert low - 1e-13 * 50 <= face <= high + 1e-13 * 50
 
@@ -82,7 +83,7 @@ def test_face_value_of_monotone_data_lies_between_its_neighbours(steps, start):
 def test_face_value_of_smooth_data_is_exact_for_polynomials_of_degree_four(power):
     edges = np.arange(10.0, 16.0)
     means = np.diff(edges ** (power + 1)) / (power + 1)
-    assert fluxes._face_value(*means) == pytest.approx(13.0**power, rel=1e-12)
+    assert face_value(*means) == pytest.approx(13.0**power, rel=1e-12)
 
 
 def test_stencil_of_the_inner_face_is_the_fifth_order_one():

@@ -2,18 +2,16 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from bcre_pde import (
     Material,
     Problem,
     SolveError,
-    fluxes,
-    grid_convergence_index,
-    refine,
+    measure_refined,
     solve_refined,
+    solve_refined_each,
 )
+from bcre_pde.line import fluxes
 
 PROBLEM = Problem(
     lambda x: (0.5 * np.sin(2 * np.pi * x / 10) - 0.5 * x, 1 + 0.4 * np.cos(2 * np.pi * x / 10)),
@@ -27,83 +25,103 @@ def middle_layer(solution):
     return float(np.interp(5.0, solution.x, solution.R[-1]))
 
 
-def test_grid_convergence_index_of_the_textbook_example():
-    """Roache's pressure recovery: f = 0.97050, 0.96854, 0.96178 on grids of ratio 2."""
-    order, error = grid_convergence_index(0.97050, 0.96854, 0.96178)
-    assert order == pytest.approx(1.78617, abs=5e-6)
-    assert error / 0.97050 == pytest.approx(0.10308e-2, abs=5e-8)
+def ladder(*orders, fails_at=math.inf):
+    """Quantities 1 + (10/cells)^p, with the number of cells in the place of a solution."""
+
+    def measure_on(cells):
+        if cells >= fails_at:
+            raise SolveError("gave up")
+        return cells, [1 + (10 / cells) ** order for order in orders]
+
+    return measure_on
 
 
-@given(
-    limit=st.floats(-10, 10),
-    size=st.floats(0.01, 5),
-    order=st.floats(0.6, 4.9),
-    ratio=st.floats(1.5, 3),
-)
-def test_pure_power_law_gives_its_order_and_five_quarters_of_its_error(limit, size, order, ratio):
-    fine, medium, coarse = (limit + size * ratio ** (order * k) for k in range(3))
-    found = grid_convergence_index(fine, medium, coarse, ratio)
-    assert found.order == pytest.approx(order, abs=1e-6)
-    assert found.error == pytest.approx(1.25 * size, rel=1e-5)
+GRIDS = (10, 20, 40, 80, 160)
 
 
-def test_profile_is_judged_by_its_mean_absolute_change():
-    fine, change = np.zeros(4), np.array([1.0, -1.0, 1.0, -1.0])
-    order, error = grid_convergence_index(fine, fine + change, fine + 5 * change)
-    assert order == pytest.approx(2.0)
-    assert error == pytest.approx(1.25 / 3)
+def allowing(*errors):
+    return lambda values: errors
 
 
-def test_order_above_five_promises_no_more_than_fifth_order():
-    order, error = grid_convergence_index(0.0, 1.0, 1001.0)
-    assert order == pytest.approx(math.log2(1000))
-    assert error == pytest.approx(1.25 / 31)
-
-
-def test_grids_that_diverge_take_the_larger_change_at_the_least_order():
-    order, error = grid_convergence_index(0.0, 1.0, 1.5)
-    assert order == pytest.approx(-1.0)
-    assert error == pytest.approx(1.25 / (math.sqrt(2) - 1))
-    order, error = grid_convergence_index(0.0, 1.0, 1.0)
-    assert order == -math.inf
-    assert error == pytest.approx(1.25 / (math.sqrt(2) - 1))
-
-
-def test_equal_values_have_no_error():
-    assert grid_convergence_index(2.0, 2.0, 3.0) == (math.inf, 0.0)
-
-
-def test_refinement_stops_at_three_grids_when_the_error_is_small():
-    refined = solve_refined(PROBLEM, [1.0], middle_layer, lambda value: 1e-2, coarsest=20)
-    assert refined.cells == (20, 40, 80)
-    assert refined.resolved
-    assert refined.error <= refined.allowed == 1e-2
-    assert refined.solution.x.size == 80
-    assert refined.measured == middle_layer(refined.solution)
-
-
-def test_refinement_goes_on_until_the_error_is_as_small_as_allowed():
-    rough = solve_refined(PROBLEM, [1.0], middle_layer, lambda value: 1e-2, coarsest=10)
-    close = solve_refined(
-        PROBLEM, [1.0], middle_layer, lambda value: 1e-5, coarsest=10, finest=1280
-    )
-    assert close.resolved
-    assert len(close.cells) > len(rough.cells)
-
-
-def test_error_estimate_covers_the_true_error():
-    reference = solve_refined(
-        PROBLEM, [1.0], middle_layer, lambda value: 0.0, coarsest=320, finest=1280, tolerance=1e-9
-    )
-    coarse = solve_refined(PROBLEM, [1.0], middle_layer, lambda value: 1e-2, coarsest=20)
-    assert abs(coarse.measured - reference.measured) <= coarse.error
+def test_refinement_goes_on_until_every_error_is_as_small_as_allowed():
+    (only,) = measure_refined(ladder(2), GRIDS, allowing(1e-1))
+    assert only.cells == (10, 20, 40, 80)
+    assert only.solution == 80
+    assert only.value == 1 + 1 / 64
+    assert only.order == pytest.approx(2)
+    assert only.error == pytest.approx(1.25 / 64)
+    assert only.error <= only.allowed == 1e-1
+    assert only.resolved
+    fast, slow = measure_refined(ladder(4, 1), GRIDS, allowing(1e-1, 0.1))
+    assert fast.cells == slow.cells == GRIDS
+    assert (fast.order, slow.order) == pytest.approx((4, 1))
+    assert (fast.allowed, slow.allowed) == (1e-1, 0.1)
+    assert fast.resolved
+    assert slow.resolved
 
 
 def test_what_the_finest_grid_cannot_settle_is_reported_as_unresolved():
-    refined = solve_refined(PROBLEM, [1.0], middle_layer, lambda value: 0.0, coarsest=10, finest=40)
-    assert refined.cells == (10, 20, 40)
-    assert not refined.resolved
-    assert refined.error > 0
+    sure, unsure = measure_refined(ladder(2, 2), GRIDS, allowing(1.0, 1e-9))
+    assert sure.cells == unsure.cells == GRIDS
+    assert (sure.resolved, unsure.resolved) == (True, False)
+    assert unsure.error > 0
+
+
+def test_refinement_never_ends_on_one_triple_alone():
+    """The changes 1, 0.1 and then 0.9: the first triple would pass, by chance."""
+    values = dict(zip(GRIDS, (0.0, 1.0, 1.1, 2.0, 2.9), strict=True))
+    (only,) = measure_refined(lambda n: (n, [values[n]]), GRIDS, allowing(0.5))
+    assert only.cells == GRIDS
+    assert only.error > 2.0
+    assert not only.resolved
+
+
+def test_last_of_three_grids_has_an_error_of_three_times_the_change_at_its_order():
+    (only,) = measure_refined(ladder(2), GRIDS[:3])
+    assert only.error == pytest.approx(3 / 16)
+
+
+@pytest.mark.parametrize(("D", "stands"), [(0.0, True), (1.0, False)])
+def test_jump_in_a_solution_is_seen(D, stands):
+    """Half of a periodic line is wet: a jump stays where there is no diffusion."""
+    wet = Problem(
+        lambda x: (-0.5 * x, np.where(x < 5, 2.0, 1.0)),
+        Material(1.0, D, 0.0, 0.5),
+        10.0,
+        "periodic",
+    )
+    found = solve_refined(wet, [2.0], middle_layer, lambda _: 0.0, coarsest=16, finest=64)
+    assert found.jump == stands
+
+
+def test_allowed_error_is_asked_of_the_finest_value():
+    seen = []
+    measure_refined(ladder(1), GRIDS[:4], lambda values: seen.append(values) or [0.0])
+    assert seen == [[1 + 1 / 4], [1 + 1 / 8]]
+
+
+def test_all_given_grids_are_measured_where_no_error_is_asked_for():
+    (measured,) = measure_refined(ladder(2), GRIDS)
+    assert measured.cells == GRIDS
+    assert measured.error == pytest.approx(1.25 / 256)
+    (on_two,) = measure_refined(ladder(2), GRIDS[:2])
+    assert on_two.value == 1 + 1 / 4
+    assert on_two.error == math.inf
+
+
+@pytest.mark.parametrize(("fails_at", "cells"), [(80, (10, 20, 40)), (40, (10, 20))])
+def test_grid_on_which_the_solver_gives_up_ends_the_refinement(fails_at, cells):
+    (measured,) = measure_refined(ladder(2, fails_at=fails_at), GRIDS, allowing(0.0))
+    assert measured.cells == cells
+    assert not measured.resolved
+    assert (measured.error == math.inf) == (len(cells) < 3)
+
+
+def test_solver_that_gives_up_on_the_first_grid_or_on_a_given_one_is_an_error():
+    with pytest.raises(SolveError):
+        measure_refined(ladder(2, fails_at=10), GRIDS, allowing(1.0))
+    with pytest.raises(SolveError):
+        measure_refined(ladder(2, fails_at=40), GRIDS)
 
 
 def test_three_grids_are_solved_even_where_the_finest_is_the_coarsest():
@@ -111,28 +129,31 @@ def test_three_grids_are_solved_even_where_the_finest_is_the_coarsest():
     assert refined.cells == (10, 20, 40)
 
 
-def test_allowed_error_is_asked_of_the_finest_value():
-    seen = []
-    solve_refined(PROBLEM, [1.0], middle_layer, lambda value: seen.append(value) or 0.0, 10, 80)
-    assert len(seen) == 2
+def test_error_estimate_covers_the_true_error():
+    reference = solve_refined(
+        PROBLEM, [1.0], middle_layer, lambda value: 0.0, coarsest=320, finest=1280, tolerance=1e-9
+    )
+    assert reference.cells == (320, 640, 1280)
+    coarse = solve_refined(PROBLEM, [1.0], middle_layer, lambda value: 1e-2, coarsest=20)
+    assert coarse.value == middle_layer(coarse.solution)
+    assert abs(coarse.value - reference.value) <= coarse.error
 
 
-def test_grid_on_which_the_solver_gives_up_ends_the_refinement(monkeypatch):
-    plain = refine.solve
+def test_several_quantities_are_measured_on_the_same_solutions():
+    number, profile = solve_refined_each(
+        PROBLEM,
+        [1.0],
+        lambda solution: [middle_layer(solution), np.interp([2.5, 5.0], solution.x, solution.R[0])],
+        lambda values: [1e-2, 1e-2],
+        coarsest=20,
+    )
+    alone = solve_refined(PROBLEM, [1.0], middle_layer, lambda value: 1e-2, coarsest=20)
+    assert number.solution is profile.solution
+    assert (number.value, number.error) == (alone.value, alone.error)
+    assert profile.value.shape == (2,)
 
-    def solve(problem, times, cells, **options):
-        if cells > 20:
-            raise SolveError("gave up")
-        return plain(problem, times, cells, **options)
 
-    monkeypatch.setattr(refine, "solve", solve)
-    refined = solve_refined(PROBLEM, [1.0], middle_layer, lambda value: 1.0, coarsest=10)
-    assert refined.cells == (10, 20)
-    assert not refined.resolved
-    assert refined.error == math.inf
-
-
-def test_solver_that_gives_up_on_the_first_grid_is_an_error(monkeypatch):
+def test_solver_that_gives_up_on_every_grid_is_an_error(monkeypatch):
     def rate(state, out, *rest):
         out[...] = math.nan
 

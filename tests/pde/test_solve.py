@@ -3,7 +3,8 @@ import math
 import numpy as np
 import pytest
 
-from bcre_pde import Material, Problem, fluxes, solve
+from bcre_pde import Material, Problem, solve
+from bcre_pde.line import fluxes
 
 METHODS = ["runge-kutta", "RK45", "DOP853", "LSODA", "BDF"]
 MATERIAL = Material(v=1.0, D=0.2, gamma=0.3, Sc=0.5, kappa=0.05)
@@ -32,6 +33,20 @@ def test_all_methods_agree_within_their_tolerance(ends):
         assert np.abs(found.R - reference.R).max() < 1e-5, method
         assert np.abs(found.h - reference.h).max() < 1e-5, method
         assert found.outflow == pytest.approx(reference.outflow, abs=1e-5), method
+
+
+@pytest.mark.parametrize("ends", ["open", "periodic"])
+def test_fields_of_py_pde_hold_the_solution(ends):
+    solution = solve(problem(pulse if ends == "open" else waves, ends=ends), [0.0, 1.0], 60)
+    field = solution.field()
+    assert field["R"].grid.periodic == [ends == "periodic"]
+    assert np.allclose(field["R"].grid.cell_coords[:, 0], solution.x, rtol=1e-14)
+    assert (field["h"].integral + field["R"].integral) == pytest.approx(solution.mass()[-1])
+    stored = solution.storage()
+    assert list(stored.times) == [0.0, 1.0]
+    for frame in (0, 1):
+        assert np.array_equal(stored[frame]["R"].data, solution.R[frame])
+        assert np.array_equal(stored[frame]["h"].data, solution.h[frame])
 
 
 @pytest.mark.parametrize("method", ["runge-kutta", "RK45", "DOP853", "LSODA"])

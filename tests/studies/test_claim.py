@@ -2,13 +2,14 @@ import math
 
 import pytest
 
-from bcre_studies.comparison.claim import Claim, Verdict, verdict_of, within, worst
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.verdict import Verdict, verdict_of, within, worst
 
 
 def test_verdicts_are_the_four_words_of_the_reports():
     assert [str(verdict) for verdict in Verdict] == [
         "agree",
-        "agree once the automaton's own diffusion is counted",
+        "explained by cell size",
         "unresolved",
         "disagree",
     ]
@@ -19,8 +20,8 @@ def test_verdicts_are_the_four_words_of_the_reports():
     [
         (0.01, True, 0.50, True, Verdict.AGREE),
         (0.05, True, 0.50, False, Verdict.AGREE),
-        (0.20, True, 0.01, True, Verdict.AGREE_EFFECTIVE),
-        (0.20, True, 0.05, True, Verdict.AGREE_EFFECTIVE),
+        (0.20, True, 0.01, True, Verdict.EXPLAINED),
+        (0.20, True, 0.05, True, Verdict.EXPLAINED),
         (0.20, True, 0.06, True, Verdict.DISAGREE),
         (0.20, True, 0.01, False, Verdict.UNRESOLVED),
         (0.20, True, 0.50, False, Verdict.UNRESOLVED),
@@ -39,14 +40,14 @@ def test_no_verdict_rests_on_a_solution_that_is_not_resolved(
 def test_difference_that_is_no_number_never_agrees(difference):
     verdict = verdict_of(difference, True, math.nan, True, 0.05)
     assert (verdict is Verdict.AGREE) == (difference <= 0.05)
-    assert verdict is not Verdict.AGREE_EFFECTIVE
+    assert verdict is not Verdict.EXPLAINED
 
 
 def test_claim_about_many_cases_is_as_good_as_its_worst_case():
     assert worst(["agree"]) is Verdict.AGREE
     assert worst(["agree", "unresolved", "agree"]) is Verdict.UNRESOLVED
     assert worst([Verdict.UNRESOLVED, Verdict.DISAGREE]) is Verdict.DISAGREE
-    assert worst([Verdict.AGREE, Verdict.AGREE_EFFECTIVE]) is Verdict.AGREE_EFFECTIVE
+    assert worst([Verdict.AGREE, Verdict.EXPLAINED]) is Verdict.EXPLAINED
 
 
 def test_verdict_that_is_none_of_the_four_words_is_refused():

@@ -1,17 +1,12 @@
 """The command ``bcre`` as others script against it: files, keys, exit codes, refusals."""
 
-import contextlib
-import io
 import json
-import math
 import re
 import subprocess
 import sys
 import tempfile
 from importlib.metadata import entry_points
 from pathlib import Path
-from typing import NamedTuple
-from unittest import mock
 
 import numpy as np
 import pandas as pd
@@ -19,10 +14,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bcre_studies import catalog, cli
-from bcre_studies.models.simulate import rule_of
+from bcre_studies import catalog
+from bcre_studies.models.automaton import rule_of
 from bcre_studies.running import run as run_module
-from bcre_studies.scenes.listing import built_in_names
+from bcre_studies.scenes.listing import built_in_names, built_in_title, line_and_plane_names
 from bcre_studies.scenes.scene import SECTIONS, load
 
 SCENE = """
@@ -49,39 +44,30 @@ BOTH = {
     "cells",
     "steps",
     "wall_s",
+    "compile_s",
     "mass_initial",
     "mass_final",
     "outflow",
     "mass_error",
     "R_min",
     "R_max",
+    "scene",
+    "title",
+    "changes",
+    "version",
+    "seed",
+}
+PDE_ERRORS = {
+    "error_estimate",
+    "error_estimate_h",
+    "error_estimate_time",
+    "observed_order",
+    "observed_order_h",
 }
 SHORT = ("--set", "until=2", "--frames", "3")
 
 
-class Ended(NamedTuple):
-    code: int
-    out: str
-    err: str
-
-
-def call(*arguments):
-    """``bcre`` with these arguments in this process; the exit code and what it printed."""
-    out, err = io.StringIO(), io.StringIO()
-    argv = mock.patch.object(sys, "argv", ["bcre", *map(str, arguments)])
-    with argv, contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        try:
-            cli.main()
-            code = 0
-        except SystemExit as ended:
-            code = ended.code
-    return Ended(code, out.getvalue(), err.getvalue())
-
-
-@pytest.fixture
-def bcre(monkeypatch, tmp_path):
-    monkeypatch.chdir(tmp_path)
-    return call
+NAMES = {"ca": "automaton", "pde": "PDE"}
 
 
 def files(folder="."):
@@ -151,8 +137,8 @@ def test_summary_has_the_named_keys_and_the_pde_an_error_estimate(bcre):
     _, summary = results()
     assert list(summary) == ["ca", "pde"]
     assert set(summary["ca"]) == BOTH | {"step_lowered", "step_raised", "blocks_redone"}
-    assert set(summary["pde"]) == BOTH | {"error_estimate"}
-    for word in ("o/profiles.csv", "o/summary.json", "ca: cells 100", "pde: cells "):
+    assert set(summary["pde"]) == BOTH | PDE_ERRORS
+    for word in ("profiles.csv, summary.json, figure.svg in o", "automaton", "BCRE (PDE)"):
         assert word in ended.out
     assert ended.err == ""
 
@@ -201,7 +187,7 @@ def test_pde_alone_is_refined_to_a_thousandth_and_beside_the_automaton_to_a_tent
 
 
 def test_pde_alone_refines_a_narrow_pulse_further_than_three_grids(bcre):
-    narrow = ["--set", "rolling.0.width=0.7", "--model", "pde"]
+    narrow = ["--set", "rolling.0.width=1", "--set", "D=0.01", "--model", "pde"]
     bcre("run", "figure2", *narrow, *SHORT, "--out", "o")
     summary = results()[1]["pde"]
     assert summary["cells"] > 400
@@ -218,9 +204,9 @@ def test_error_estimate_covers_the_distance_from_a_much_finer_grid(bcre):
 
 
 def test_pde_on_a_grid_too_small_to_coarsen_says_that_its_error_is_unknown(bcre):
-    bcre("run", "figure2", "--model", "pde", *SHORT, "--out", "o", "--set", "solver.cells=16")
+    bcre("run", "figure2", "--model", "pde", *SHORT, "--out", "o", "--set", "solver.cells=25")
     _, summary = results()
-    assert summary["pde"]["cells"] == 16
+    assert summary["pde"]["cells"] == 25
     assert summary["pde"]["error_estimate"] is None
 
 
@@ -268,7 +254,8 @@ def test_tables_are_found_beside_the_scene_wherever_the_command_is_started(bcre,
     Path("elsewhere").mkdir()
     monkeypatch.chdir("elsewhere")
     assert bcre("run", scene, "--model", "ca").code == 0
-    assert files() == ["out", "out/scene", "out/scene/profiles.csv", "out/scene/summary.json"]
+    written = ("figure.svg", "profiles.csv", "summary.json")
+    assert files() == ["out", "out/scene", *(f"out/scene/{name}" for name in written)]
 
 
 def test_same_run_writes_the_same_profiles(bcre):
@@ -368,13 +355,13 @@ def test_bad_input_ends_in_one_line_exit_2_and_nothing_on_disk(bcre, arguments, 
 
 @settings(max_examples=30, deadline=None)
 @given(key=st.text(max_size=12), value=st.text(max_size=12))
-def test_unknown_key_is_refused_whatever_its_name_and_value(key, value):
+def test_unknown_key_is_refused_whatever_its_name_and_value(run_bcre, key, value):
     fields = {field for model in SECTIONS.values() for field in model.model_fields}
     name = key.split("=")[0].strip()
     if name in fields | {"title", "material", "domain", "time", "solver"}:
         return
     with tempfile.TemporaryDirectory() as folder:
-        refused(call("run", "figure2", f"--set={key}={value}", "--out", f"{folder}/o"))
+        refused(run_bcre("run", "figure2", f"--set={key}={value}", "--out", f"{folder}/o"))
         assert files(folder) == []
 
 
@@ -415,7 +402,7 @@ def test_solver_that_gives_up_is_named_with_its_tolerance(bcre, changes):
 )
 def test_run_that_would_not_end_is_refused_with_its_steps(bcre, model, change):
     ended = bcre("run", "figure2", "--model", model, "--set", change)
-    refused(ended, "time.", f"steps of the {model}", "must take at most")
+    refused(ended, "time.", f"steps of the {NAMES[model]}", "must take at most")
     assert files() == []
 
 
@@ -518,11 +505,11 @@ def test_list_names_all_scenes_and_studies_with_their_titles(bcre):
     assert (ended.code, ended.err) == (0, "")
     lines = [line.split(maxsplit=1) for line in ended.out.splitlines()]
     told = {name: rest.strip() for name, rest in lines}
-    for name in built_in_names():
-        assert told[name] == load(name).title
+    for name in line_and_plane_names():
+        assert told[name] == built_in_title(name)
     for name in catalog.STUDIES:
-        assert told[name] == catalog.study(name).TITLE
-    assert math.isclose(len(told), 2 + len(built_in_names()) + len(catalog.STUDIES))
+        assert told[name] == catalog.STUDIES[name].title
+    assert len(told) == 2 + len(line_and_plane_names()) + len(catalog.STUDIES)
     assert files() == []
 
 

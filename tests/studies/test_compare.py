@@ -6,22 +6,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import bcre_pde
-from bcre_studies.comparison.claim import Verdict
-from bcre_studies.comparison.compare import (
-    Comparison,
-    compare,
-    relative_difference,
-    relative_error,
-    sample,
-    significant,
-    to_error,
-)
-from bcre_studies.models.simulate import as_run, problem_of, run_automaton
+from bcre_studies.comparison.compare import Comparison, compare
+from bcre_studies.comparison.difference import relative_difference
+from bcre_studies.comparison.error import relative_error
+from bcre_studies.comparison.rounding import significant, to_error
+from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.models.registry import AUTOMATON
+from bcre_studies.models.run import Run
 from bcre_studies.scenes.scene import load
 
 
 def refined(value, error, allowed):
-    return bcre_pde.Refined(None, value, (100, 200, 400), 2.0, error, allowed)
+    return bcre_pde.Measured(value, error, 2.0, allowed, (100, 200, 400))
 
 
 def test_relative_difference_of_profiles_is_that_of_their_areas():
@@ -76,29 +72,24 @@ def test_sampling_between_cells_is_sixth_order(ends):
         scene = load("climbing_wave" if ends == "periodic" else "figure2").with_changes(length=20.0)
         places = (np.arange(cells) + 0.5) * 20 / cells
         R = 2 + np.sin(k * places)
-        run = as_run(
-            scene,
-            bcre_pde.Solution(
-                problem_of(scene), places, np.zeros(1), R[None], R[None], np.zeros(1), 0, 0, 0.0
-            ),
-        )
-        gaps.append(np.abs(sample(run, x) - 2 - np.sin(k * x)).max())
+        run = Run(scene, places, np.zeros(1), R[None], R[None], np.zeros(1), 0, 0)
+        gaps.append(np.abs(run.sample(x) - 2 - np.sin(k * x)).max())
     assert gaps[1] < 1e-6
     assert math.log2(gaps[0] / gaps[1]) > 5
 
 
 def test_sampling_at_the_cells_themselves_changes_nothing():
     scene = load("figure2")
-    run = run_automaton(scene, [0.0, 2.0])
-    assert np.array_equal(sample(run, scene.centres()), run.R[-1])
-    assert np.array_equal(sample(run, scene.centres(), "u", 0), run.u[0])
+    run = AUTOMATON.run(scene, [0.0, 2.0])
+    assert np.array_equal(run.sample(scene.centres()), run.R[-1])
+    assert np.array_equal(run.sample(scene.centres(), "u", 0), run.u[0])
 
 
 def test_verdict_of_a_comparison_follows_from_its_differences():
     close, far = refined(1.0, 1e-4, 1e-2), refined(2.0, 1e-4, 1e-2)
     loose = refined(2.0, 1.0, 1e-2)
     assert Comparison(1.01, close, far, 0.05).verdict is Verdict.AGREE
-    assert Comparison(1.01, far, close, 0.05).verdict is Verdict.AGREE_EFFECTIVE
+    assert Comparison(1.01, far, close, 0.05).verdict is Verdict.EXPLAINED
     assert Comparison(1.01, far, far, 0.05).verdict is Verdict.DISAGREE
     assert Comparison(1.01, loose, close, 0.05).verdict is Verdict.UNRESOLVED
 
@@ -120,12 +111,12 @@ def test_figures_2_and_3_differ_by_the_automatons_own_diffusion(name, nominal, e
     scene = load(name)
     x = scene.centres()
     found = compare(
-        scene, [scene.time.until], lambda run: sample(run, x), 0.05, coarsest=100, finest=400
+        scene, [scene.time.until], lambda run: run.sample(x), 0.05, coarsest=100, finest=400
     )
     assert found.difference == pytest.approx(nominal, rel=0.1)
     assert found.difference_effective == pytest.approx(effective, rel=0.1)
-    assert found.verdict is Verdict.AGREE_EFFECTIVE
-    assert found.pde.error <= 0.1 * found.difference * np.mean(np.abs(found.pde.measured))
+    assert found.verdict is Verdict.EXPLAINED
+    assert found.pde.error <= 0.1 * found.difference * np.mean(np.abs(found.pde.value))
 
 
 def test_solution_that_no_grid_settles_is_unresolved():

@@ -6,9 +6,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from bcre_studies.models.registry import CANDIDATES
 from bcre_studies.scenes.scene import load
 from bcre_studies.timing import costs
-from bcre_studies.timing.costs import CELLS, CLOSURES, MODELS, Costs, closures_of
+from bcre_studies.timing.costs import CELLS, CLOSURES, Costs, closures_of
 
 TABLE = """model,closures,cells,cell_step_s,frame_s
 upwind,none,100,1e-9,1e-4
@@ -54,8 +55,8 @@ def test_the_closures_of_a_scene_are_those_of_its_material(changes, closures):
 
 def test_the_record_has_every_model_with_every_closure():
     table = costs.recorded().table
-    assert len(table) == len(MODELS) * len(CLOSURES) * len(CELLS)
-    for model in MODELS:
+    assert len(table) == len(CANDIDATES) * len(CLOSURES) * len(CELLS)
+    for model in CANDIDATES:
         for closures in CLOSURES:
             assert costs.recorded().seconds(model, 200, 100, closures) > 0
 

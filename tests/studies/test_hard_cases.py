@@ -6,48 +6,47 @@ import pytest
 
 import bcre_ca
 import bcre_pde
-from bcre_studies.comparison.claim import Verdict
-from bcre_studies.verification.hard_cases import adaptive_step, scarp_grids
-from bcre_studies.verification.hard_cases import study as study
-from bcre_studies.verification.hard_cases.study import FAILS, REFUSED, SURVIVES, Case
+from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.verification.hard_cases import adaptive_step, scarp_grids, study
+from bcre_studies.verification.hard_cases.study import FAILS, REFUSED, SURVIVES, Attempt
 
 SCENES = study.scenes()
 
 
 @pytest.mark.parametrize(
-    ("scene", "told"),
+    ("scene", "message"),
     [
         ("v = 2.5, d = 1, dt = 1", "dt = 1 cannot be stable: v dt/d"),
         ("figure 1, dt = 1", "the avalanche outgrew the step at t = "),
     ],
 )
-def test_fixed_steps_are_refused_where_known_and_fail_by_name_where_outgrown(scene, told):
-    row = study._try(Case(scene, "ca", "upwind", 1.0))
+def test_fixed_steps_are_refused_where_known_and_fail_by_name_where_outgrown(scene, message):
+    row = study._try(Attempt(scene, "ca", "upwind", 1.0))
     assert row["verdict"] == (REFUSED if "2.5" in scene else FAILS)
-    assert row["told"].startswith(told)
-    assert study._try(Case(scene, "ca"))["verdict"].startswith(SURVIVES)
+    assert row["message"].startswith(message)
+    assert study._try(Attempt(scene, "ca"))["verdict"].startswith(SURVIVES)
 
 
 def test_an_avalanche_outgrows_its_step_after_t_200_where_R_passes_100():
-    told = study._try(Case("figure 1, dt = 1", "ca", "upwind", 1.0))["told"]
-    assert 200 < float(told.split("t = ")[1].split(",")[0]) < 400
-    assert 100 < float(told.split("R = ")[1].split(";")[0]) < 120
-    assert "in cell 63" in told
+    message = study._try(Attempt("figure 1, dt = 1", "ca", "upwind", 1.0))["message"]
+    assert 200 < float(message.split("t = ")[1].split(",")[0]) < 400
+    assert 100 < float(message.split("R = ")[1].split(";")[0]) < 120
+    assert "in cell 63" in message
 
 
 @pytest.mark.parametrize("scene", ["1 cell", "2 cells"])
 def test_grids_too_small_for_bcre_are_refused_and_no_trouble_to_the_automaton(scene):
-    row = study._try(Case(scene, "pde"))
+    row = study._try(Attempt(scene, "pde"))
     assert (row["verdict"], row["mass_error_at_most"]) == (REFUSED, "")
-    assert "must be at least 8" in row["told"]
+    assert "must be at least 8" in row["message"]
     for scheme in study.SCHEMES:
-        assert study._try(Case(scene, "ca", scheme))["verdict"] == SURVIVES
+        assert study._try(Attempt(scene, "ca", scheme))["verdict"] == SURVIVES
 
 
 @pytest.mark.parametrize("scheme", study.SCHEMES)
 @pytest.mark.parametrize("scene", [name for name in SCENES if name != "kappa = 10"])
 def test_step_that_follows_its_bounds_survives_everything_with_R_not_negative(scene, scheme):
-    row = study._try(Case(scene, "ca", scheme))
+    row = study._try(Attempt(scene, "ca", scheme))
     assert row["verdict"].startswith(SURVIVES)
     assert row["smallest_R"] >= 0
     assert row["mass_error_at_most"] <= 1e-12
@@ -121,11 +120,16 @@ def test_adapted_step_of_figure_2_gives_the_fixed_steps_R():
     assert row["lowered"] > 3
 
 
-def made_up(told="in cell 3, t = 4: dt = 1", smallest=0.0, mass=1e-13, faults="as expected"):
+def made_up(message="in cell 3, t = 4: dt = 1", smallest=0.0, mass=1e-13):
     rows = [
-        {"scene": study.long_run().name, "verdict": SURVIVES, "told": "", "smallest_R": smallest},
-        {"scene": "A", "verdict": FAILS, "told": told, "smallest_R": ""},
-        {"scene": "B", "verdict": REFUSED, "told": "dt = 1: must not", "smallest_R": ""},
+        {
+            "scene": study.long_run().name,
+            "verdict": SURVIVES,
+            "message": "",
+            "smallest_R": smallest,
+        },
+        {"scene": "A", "verdict": FAILS, "message": message, "smallest_R": ""},
+        {"scene": "B", "verdict": REFUSED, "message": "dt = 1: must not", "smallest_R": ""},
     ]
     common = {"model": "ca", "largest_R": 1.0, "mass_error_at_most": ""}
     table = [common | row for row in rows]
@@ -136,7 +140,6 @@ def made_up(told="in cell 3, t = 4: dt = 1", smallest=0.0, mass=1e-13, faults="a
         "comparison": pd.DataFrame(table),
         "scarp": scarp_grids.with_changes(scarp_rows(0.0)),
         "adaptive_step": pd.DataFrame([adaptive | {"fixed_steps": 2, "verdict": "agree"}]),
-        "faults": pd.DataFrame([{"fault": "disk full", "verdict": faults}]),
     }
 
 
@@ -146,8 +149,24 @@ def test_claims_fail_by_what_they_claim():
         return [claim.name for claim in claims if claim.verdict is not Verdict.AGREE]
 
     assert failing() == []
-    assert failing(told="it broke at t = 4") == ["each failing model says where"]
+    assert failing(message="it broke at t = 4") == ["each failing model says where"]
     assert failing(smallest=-0.1) == ["R >= 0"]
     assert failing(mass=1e-11) == ["mass"]
-    assert failing(faults="not") == ["faults"]
     assert failing(smallest=float("nan")) == ["finite"]
+
+
+def test_panels_of_the_scarp_name_what_they_show():
+    from matplotlib.figure import Figure
+
+    table = pd.DataFrame(
+        [
+            {"model": model, "kappa": kappa, "cells": cells, "max_R": 1.0, "place": 2.0}
+            for model, kappa in scarp_grids.SERIES
+            for cells in (100, 200)
+        ]
+    )
+    axis = Figure().subplots()
+    scarp_grids.draw(axis, table, "max_R", "max R")
+    assert axis.get_ylabel() == "max R"
+    names = {line.get_label() for line in axis.get_lines()}
+    assert names == {name for _, name in scarp_grids.SERIES.values()}

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from bcre_studies.models.run import Run
 from bcre_studies.observables import named as o
 from bcre_studies.scenes.scene import load
 
@@ -20,7 +21,8 @@ def record(h, R=None, x=None, scene=OPEN):
     x = centres() if x is None else x
     h = np.atleast_2d(h)
     R = np.zeros_like(h) if R is None else np.atleast_2d(R)
-    return o.Record(scene, x, np.arange(len(h), dtype=float), h, R)
+    t = np.arange(len(h), dtype=float)
+    return Run(scene, x, t, h, R, 0 * t, 0, 0)
 
 
 def start(x):
@@ -111,7 +113,7 @@ def test_a_model_without_a_rolling_layer_gives_neither_R_nor_front():
     x = centres()
     h, R = start(x)
     full = record([h, h], [R, R])
-    alone = o.Record(OPEN, x, np.array([0.0, 1.0]), np.array([h, h]), None)
+    alone = record([h, h], [0 * h, 0 * h])
     assert o.change("R", full, alone) == 1
     assert o.change("front", full, alone) == 1
     assert o.change("slope", full, alone) == 0

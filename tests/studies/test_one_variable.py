@@ -8,9 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bcre_studies.comparison.claim import Verdict
-from bcre_studies.models.height_only import SETTLED, settle
+from bcre_ca.height_only import SETTLED, settled
+from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.models.registry import HEIGHT_ONLY
 from bcre_studies.observables.outcome import slope
+from bcre_studies.scenes.scene import load
 from bcre_studies.validation import one_variable as study
 
 CELLS, D = 60, 0.5
@@ -27,7 +29,7 @@ def test_control_with_periodic_ends_conserves_mass_and_flattens_every_roughness(
     seed, Sc, amplitude
 ):
     h = rough(seed, amplitude) - Sc * X
-    end = settle(h, Sc * D, True)
+    end = settled(h, Sc * D, True)[0]
     assert math.fsum(end) == pytest.approx(math.fsum(h), abs=1e-10)
     u = end + Sc * X
     assert np.ptp(u) <= CELLS * 4 * SETTLED + 1e-12
@@ -38,38 +40,49 @@ def test_control_with_periodic_ends_conserves_mass_and_flattens_every_roughness(
 def test_slope_not_above_repose_is_left_alone(periodic, steepness):
     h = -steepness * X if not periodic else -0.5 * X
     before = h.copy()
-    assert np.array_equal(settle(h, 0.5 * D, periodic), before)
+    assert np.array_equal(settled(h, 0.5 * D, periodic)[0], before)
     assert np.array_equal(h, before)
 
 
 def test_bump_whose_flanks_stand_is_left_alone():
     h = 0.2 * np.sin(X / 2)
     assert np.diff(h).min() > -0.5 * D
-    assert np.array_equal(settle(h, 0.5 * D, False), h)
+    assert np.array_equal(settled(h, 0.5 * D, False)[0], h)
 
 
 @pytest.mark.parametrize("excess", [0.1, 1.0, 4.0])
 @pytest.mark.parametrize("Sc", [0.0, 0.5, 1.3])
 def test_slope_above_repose_ends_at_repose_undisturbed(excess, Sc):
     h = (Sc + excess) * (X[-1] - X)
-    end = settle(h, Sc * D, False)
+    end, left, _ = settled(h, Sc * D, False)
     assert slope(X, end) == pytest.approx(Sc, abs=1e-6)
     assert (end[:-1] - end[1:]).max() <= Sc * D + 4.1 * SETTLED
     assert end[-1] == h[-1]
+    assert left == pytest.approx(h.sum() - end.sum(), rel=1e-9)
 
 
 def test_input_is_not_changed():
     h = 2.0 * (X[-1] - X)
     before = h.copy()
-    settle(h, 0.5 * D, False)
+    settled(h, 0.5 * D, False)
     assert np.array_equal(h, before)
 
 
 def test_what_is_too_steep_moves_one_cell_down_until_it_stands():
     h = np.array([1.0, 0.0, 0.0, 0.0])
-    end = settle(h, 0.5, False)
+    end = settled(h, 0.5, False)[0]
     assert end == pytest.approx([0.75, 0.25, 0.0, 0.0], abs=1e-8)
     assert end.sum() == pytest.approx(1, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", ["figure1", "rough_slope"])
+def test_the_record_shows_the_sand_as_laid_and_as_settled_and_keeps_its_mass(name):
+    scene = load(name)
+    run = HEIGHT_ONLY.run(scene, [0.0, 1.0, 2.0], 100)
+    assert run.mass_error() < 1e-12
+    assert run.h[0] == pytest.approx(np.sum(scene.initial(scene.centres(100)), axis=0))
+    assert np.array_equal(run.h[1], run.h[2])
+    assert not run.R.any()
 
 
 @pytest.mark.parametrize(("excess", "pulse"), [(0.5, 1.0), (3.2, 0.0)])

@@ -8,7 +8,7 @@ import pytest
 
 import bcre_ca
 from bcre_pde import exact
-from bcre_studies.comparison.claim import Verdict
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.verification import order_of_accuracy as study
 
 SOLUTIONS = {
@@ -43,7 +43,7 @@ def fit(monkeypatch):
 
 
 def with_wrong(solution, name, factor):
-    """The solution, of which the models are told a wrong coefficient."""
+    """The solution, with a wrong coefficient in the models."""
     wrong = factor * getattr(solution.material, name)
     return replace(solution, material=replace(solution.material, **{name: wrong}))
 

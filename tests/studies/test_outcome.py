@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from bcre_studies.models.simulate import Run
+from bcre_studies.models.run import Run
 from bcre_studies.observables.outcome import (
     Outcome,
     growth_rate,
@@ -28,7 +28,7 @@ def run_of(u_end, R):
     u = np.linspace(0, 1, len(R))[:, None] * (u_end - start) + start
     layers = np.array(R)[:, None] * np.exp(-(((x - CENTRE) / 3) ** 2))
     outflow = np.zeros(t.size)
-    return Run("ca", scene, x, t, u - 0.5 * x, layers, outflow, steps=1, wall_s=0.0)
+    return Run(scene, x, t, u - 0.5 * x, layers, outflow, steps=1, evaluations=1)
 
 
 def test_the_growth_rate_leaves_the_spreading_out():

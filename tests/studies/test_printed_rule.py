@@ -8,11 +8,12 @@ import pandas as pd
 import pytest
 
 import bcre_ca
-from bcre_studies.comparison.claim import Verdict
-from bcre_studies.models.simulate import rule_of
+from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.models.automaton import rule_of
 from bcre_studies.observables.outcome import slope
 from bcre_studies.scenes.scene import load
-from bcre_studies.validation import printed_rule as study
+from bcre_studies.validation.printed_rule import study
+from bcre_studies.validation.printed_rule.updated import march
 
 
 def rule(v=0.1, D=0.1, d=1.0, dt=1.0, order="synchronous", sign="consistent"):
@@ -91,29 +92,68 @@ def test_caption_is_not_met_by_what_did_not_happen():
         scene = load(figure)
         start = bcre_ca.Pile(*scene.initial(scene.centres()))
         (end,) = bcre_ca.frames(start, rule_of(scene), [scene.time.until * 5])
-        assert not study.caption(scene, start, start)
+        assert not study.caption(figure, start, start)
         negative = np.where(np.arange(end.R.size) == 7, -1e-9, end.R)
-        assert not study.caption(scene, start, replace(end, R=negative))
+        assert not study.caption(figure, start, replace(end, R=negative))
 
 
 def test_figure_3_needs_a_change_uphill_of_the_pulse():
     scene = load("figure3")
     start = bcre_ca.Pile(*scene.initial(scene.centres()))
     (end,) = bcre_ca.frames(start, rule_of(scene), [scene.time.until])
-    assert study.caption(scene, start, end)
+    assert study.caption("figure3", start, end)
     uphill = scene.centres() < 50
     h = np.where(uphill, start.h, end.h)
-    assert not study.caption(scene, start, replace(end, h=h))
+    assert not study.caption("figure3", start, replace(end, h=h))
 
 
-def test_verdicts_turn_with_the_captions():
+@pytest.mark.parametrize("slope", [3.7, 2.4])
+def test_what_is_left_of_figure_1_is_the_wedge_at_repose_and_not_almost_nothing(slope):
+    """Sc/S0 and the last cell: 14 % at S0 = 3.7, 22 % at 2.4."""
+    scene = load("figure1").with_changes(**{"surface.0.slope": slope})
+    start = bcre_ca.Pile(*scene.initial(scene.centres()))
+    (end,) = bcre_ca.frames(start, rule_of(scene), [3000.0])
+    expected = 0.5 / slope + (1 - 0.5 / slope) / 100
+    assert end.h.sum() / start.h.sum() == pytest.approx(expected, abs=1e-4)
+    assert study.caption("figure1", start, end)
+    more = replace(end, h=end.h + 0.002 * start.h)
+    assert not study.caption("figure1", start, more)
+
+
+@pytest.mark.parametrize("courant", [0.1, 0.5, 0.9])
+def test_reading_with_R_as_updated_loses_the_square_of_the_courant_number_in_a_step(courant):
+    """Of sand that rolls without exchange; with the old R a step keeps it to rounding."""
+    R = np.zeros(51)
+    R[25] = 1.0
+    r = replace(rule(v=courant, D=0.2), gamma=0.0)
+    _, after, _ = march(0 * R, R, r, 1, in_place=False)
+    assert after.sum() == pytest.approx(1 - courant**2, rel=1e-12)
+    assert bcre_ca.step(0 * R, R, r)[1].sum() == pytest.approx(1, rel=1e-12)
+
+
+def test_reading_with_R_as_updated_shows_the_captions_but_not_the_paper_s_sand():
+    for order, figure in product(study.UPDATED, study.FIGURES):
+        row = study.read(figure, "stable", "consistent", order)
+        assert row["caption"]
+        assert row["mass_error"] > 1e-3
+
+
+def test_verdicts_turn_with_the_captions_and_the_sand(monkeypatch):
+    monkeypatch.setattr(study, "each", lambda read, cases, _: [read(case) for case in cases])
     tables = study.run()
-    assert len(tables["comparison"]) == 36
-    assert [claim.verdict for claim in study.judge(tables)] == [Verdict.AGREE] * 3
     table = tables["comparison"]
+    assert len(table) == 60
+    assert [claim.verdict for claim in study.judge(tables)] == [Verdict.AGREE] * 4
     for caption, expected in (
         (True, [Verdict.AGREE, Verdict.DISAGREE, Verdict.DISAGREE]),
         (False, [Verdict.DISAGREE, Verdict.AGREE, Verdict.AGREE]),
     ):
         changed: pd.DataFrame = table.assign(caption=caption)
-        assert [claim.verdict for claim in study.judge({"comparison": changed})] == expected
+        claims = study.judge({"comparison": changed})
+        assert [claim.verdict for claim in claims[:3]] == expected
+        assert ("reverse slope" in claims[1].evidence) is not caption
+        assert ("do not tell the signs apart" in claims[1].evidence) is caption
+    kept = study.judge({"comparison": table.assign(mass_error=1e-9)})
+    assert kept[3].verdict is Verdict.DISAGREE
+    alike = study.judge({"comparison": table.assign(drift=0.1)})
+    assert "only the synchronous order" not in alike[0].evidence

@@ -3,7 +3,7 @@
 import pandas as pd
 import pytest
 
-from bcre_studies.comparison.claim import Verdict
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.performance import scaling as study
 
 

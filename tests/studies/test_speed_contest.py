@@ -169,7 +169,7 @@ def test_grids_get_finer_until_the_next_would_take_more_than_the_stated_cell_ste
     options, most, cells
 ):
     contender, prepared = made_up(**options)
-    found = list(contest.rungs(contender, None, most))
+    found = list(contest.rungs(contender, contest.scenes()["figure 2"], most))
     assert [rung for rung, _, _ in found] == prepared == cells
     assert all(end.x.size == rung for rung, _, end in found)
     assert all(solve().evaluations == end.evaluations for _, solve, end in found)

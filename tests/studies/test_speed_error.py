@@ -5,7 +5,7 @@ from dataclasses import replace
 import pandas as pd
 import pytest
 
-from bcre_studies.comparison.claim import Verdict
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.performance import speed_error as study
 from bcre_studies.performance.record import contest
 from bcre_studies.performance.record.record import TARGETS
@@ -126,9 +126,9 @@ def test_errors_are_told_no_further_than_the_truth_allows(monkeypatch):
     monkeypatch.setattr(contest, "own", lambda: few)
     all_rows = study._errors_of(("figure 2", index))
     monkeypatch.setattr(contest, "truth_of", lambda scene: replace(truth, error=0.005))
-    told = study._errors_of(("figure 2", index))
-    assert len(told) < len(all_rows)
-    assert [row["cells"] for row in told] == [
+    rows_of_case = study._errors_of(("figure 2", index))
+    assert len(rows_of_case) < len(all_rows)
+    assert [row["cells"] for row in rows_of_case] == [
         row["cells"] for row in all_rows if row["error_R"] >= 0.05
     ]
-    assert all(row["cell_steps"] == float(f"{row['cell_steps']:.1e}") for row in told)
+    assert all(row["cell_steps"] == float(f"{row['cell_steps']:.1e}") for row in rows_of_case)

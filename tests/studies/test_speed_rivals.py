@@ -1,3 +1,4 @@
+import json
 import os
 import subprocess
 import sys
@@ -38,36 +39,46 @@ def automaton(problem, until, cells, dt):
     return evolve(h, R, rule, round(until / dt), problem.ends)
 
 
+EXPRESSIONS = {
+    "upwind, open": ("open", 0.0, 3.0, 40, 0.1, 1e-4),
+    "upwind, periodic": ("periodic", 0.0, 3.0, 40, 0.1, 1e-4),
+    "central, 20 cells": ("periodic", 0.2, 0.5, 20, None, 1e-6),
+    "central, 40 cells": ("periodic", 0.2, 0.5, 40, None, 1e-6),
+    "central, open": ("open", 0.2, 0.5, 40, None, 1e-6),
+}
+"""Ends, kappa, until, cells, dt and tolerance."""
+
 # py-pde compiles for a minute or so; the same Python, run as it stands, shows the same numbers.
 UNCOMPILED = """
-import sys
+import json, sys
 import numpy as np
 from bcre_pde import Material, Problem
 from bcre_studies.performance.rivals import pypde_expressions as expressions
-
-ends, kappa, until, cells, dt, tolerance, folder = sys.argv[1:]
 
 def initial(x):
     wave = np.sin(2 * np.pi * x / 20)
     return -0.5 * x + 0.2 * wave, 1 + 0.5 * wave
 
-problem = Problem(initial, Material(1.0, 0.3, 0.2, 0.5, kappa=float(kappa)), 20.0, ends)
-dt = None if dt == "none" else float(dt)
-solve = expressions.prepare(problem, float(until), int(cells), dt, float(tolerance))
-first, second = solve(), solve()
-assert first.R.tobytes() == second.R.tobytes() and first.steps == second.steps
-if dt is not None:
-    user = expressions.solve(problem, float(until), int(cells), dt)
-    assert user.R.tobytes() == first.R.tobytes() and user.steps == first.steps
-np.save(folder, [first.x, first.h, first.R, np.full_like(first.x, first.steps)])
+def layers(ends, kappa, until, cells, dt, tolerance):
+    problem = Problem(initial, Material(1.0, 0.3, 0.2, 0.5, kappa=kappa), 20.0, ends)
+    solve = expressions.prepare(problem, until, cells, dt, tolerance)
+    first, second = solve(), solve()
+    assert first.R.tobytes() == second.R.tobytes() and first.steps == second.steps
+    if dt is not None:
+        user = expressions.solve(problem, until, cells, dt)
+        assert user.R.tobytes() == first.R.tobytes() and user.steps == first.steps
+    return [first.x, first.h, first.R, np.full_like(first.x, first.steps)]
+
+np.savez(sys.argv[1], **{name: layers(*case) for name, case in json.loads(sys.argv[2]).items()})
 """
 
 
-def py_pde(tmp_path, ends, kappa, until, cells, dt, tolerance=1e-4):
-    saved = tmp_path / "layers.npy"
-    arguments = [str(value) for value in (ends, kappa, until, cells, dt, tolerance, saved)]
+@pytest.fixture(scope="module")
+def py_pde(tmp_path_factory):
+    """x, h, R and the number of steps of every case, from one process."""
+    saved = tmp_path_factory.mktemp("expressions") / "layers.npz"
     subprocess.run(
-        [sys.executable, "-c", UNCOMPILED, *arguments],
+        [sys.executable, "-c", UNCOMPILED, str(saved), json.dumps(EXPRESSIONS)],
         check=True,
         env=os.environ | {"NUMBA_DISABLE_JIT": "1"},
     )
@@ -75,8 +86,8 @@ def py_pde(tmp_path, ends, kappa, until, cells, dt, tolerance=1e-4):
 
 
 @pytest.mark.parametrize("ends", ["open", "periodic"])
-def test_upwind_expressions_of_py_pde_are_the_automaton_within_rounding(tmp_path, ends):
-    x, h, R, steps = py_pde(tmp_path, ends, 0.0, until=3.0, cells=40, dt=0.1)
+def test_upwind_expressions_of_py_pde_are_the_automaton_within_rounding(py_pde, ends):
+    x, h, R, steps = py_pde[f"upwind, {ends}"]
     problem = replace(OPEN, ends=ends)
     h_automaton, R_automaton = automaton(problem, 3.0, 40, 0.1)
     h_start, R_start = problem.initial(x)
@@ -87,11 +98,11 @@ def test_upwind_expressions_of_py_pde_are_the_automaton_within_rounding(tmp_path
     assert steps[0] == 30
 
 
-def test_central_expressions_of_py_pde_solve_bcre_to_second_order(tmp_path):
+def test_central_expressions_of_py_pde_solve_bcre_to_second_order(py_pde):
     exact = bcre_pde.solve(CURVED, [0.5], 320)
     errors = []
     for cells in (20, 40):
-        _, h, R, _ = py_pde(tmp_path, "periodic", 0.2, 0.5, cells, "none", tolerance=1e-6)
+        _, h, R, _ = py_pde[f"central, {cells} cells"]
         errors.append(
             np.abs(R - coarsened(exact.R[0], cells)).mean()
             + np.abs(h - coarsened(exact.h[0], cells)).mean()
@@ -100,10 +111,10 @@ def test_central_expressions_of_py_pde_solve_bcre_to_second_order(tmp_path):
     assert 3.2 < errors[0] / errors[1] < 5
 
 
-def test_central_expressions_of_py_pde_take_open_ends(tmp_path):
+def test_central_expressions_of_py_pde_take_open_ends(py_pde):
     problem = replace(OPEN, material=replace(OPEN.material, kappa=0.2))
     exact = bcre_pde.solve(problem, [0.5], 320)
-    _, h, R, _ = py_pde(tmp_path, "open", 0.2, 0.5, 40, "none", tolerance=1e-6)
+    _, h, R, _ = py_pde["central, open"]
     assert np.abs(R - coarsened(exact.R[0], 40)).mean() < 0.02
     assert np.abs(h - coarsened(exact.h[0], 40)).mean() < 0.002
     assert abs(h[0] - coarsened(exact.h[0], 40)[0]) < 8e-4

@@ -5,9 +5,7 @@ import pandas as pd
 import pytest
 
 import bcre_ca
-from bcre_pde import Material
-from bcre_pde.fixed_step import take_fixed_steps
-from bcre_studies.comparison.claim import Verdict
+from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.verification.stability import amplification, growth
 from bcre_studies.verification.stability import study as stability
 from bcre_studies.verification.stability.amplification import Numbers, rule_with, stable
@@ -15,7 +13,7 @@ from bcre_studies.verification.stability.study import (
     CLIMB_AND_DRIFT,
     DRIFT_AND_SPREAD,
     VARIANTS,
-    Case,
+    Diagram,
 )
 
 CELLS, WAVES = 120, 7
@@ -93,27 +91,17 @@ def test_a_thick_layer_shortens_the_step_of_a_sweep_downhill_only():
         bcre_ca.evolve(np.zeros(8), np.ones(8), refused, 1, "periodic")
 
 
-@pytest.mark.parametrize("method", ["runge-kutta", "DOP853"])
-def test_compiled_march_is_that_of_fixed_steps_to_the_bit(method):
-    u, R = growth.noise(32)
-    layers = np.array([u, 1 + R, np.zeros(32)])
-    a, b, _ = growth.tableau(method)
-    growth._pde_march(growth._digest())(layers, 0.4, 0.1, 0.3, a, b, 20)
-    expected = take_fixed_steps(Material(0.4, 0.1, 0.3, 0.0), u, 1 + R, 1.0, 1.0, 20, method)
-    assert np.array_equal(layers[:2], expected)
-
-
 def test_small_planes_are_measured_predicted_and_accepted_alike(monkeypatch):
     monkeypatch.setattr(stability, "POINTS", 8)
     monkeypatch.setattr(stability, "RAYS", 3)
-    row, rays, points = stability._measure(Case("ca", RIGHT, CLIMB_AND_DRIFT))
+    row, rays, points = stability._measure(Diagram("ca", RIGHT, CLIMB_AND_DRIFT))
     assert row["points"] == 64
     assert row["predicted_stable_but_grows"] == row["accepted_but_grows"] == 0
     assert row["distance_percent"] <= 2
     assert row["verdict"] == Verdict.AGREE
     assert sum(line["stable"].count("0") for line in points) == row["grow"] == row["refused"]
     assert all(ray["bound"] == pytest.approx(ray["predicted"], rel=0.01) for ray in rays)
-    row, _, _ = stability._measure(Case("pde", "DOP853", DRIFT_AND_SPREAD))
+    row, _, _ = stability._measure(Diagram("pde", "DOP853", DRIFT_AND_SPREAD))
     assert row["predicted_stable_but_grows"] > 0 == row["accepted_but_grows"]
     assert row["verdict"] == Verdict.DISAGREE
 

@@ -4,37 +4,38 @@ from __future__ import annotations
 
 import math
 import shlex
-from collections.abc import Iterator
+import sys
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from rich.console import Console
 from rich.markup import escape
 from rich.progress import Progress
 
-from bcre_studies.advisor.advise import Advice, Effort, advise
+from bcre_studies.advisor.advise import Advice, Effort
 from bcre_studies.advisor.options import PRECISE, Option
 from bcre_studies.advisor.pilot import with_model
 from bcre_studies.advisor.question import Question
 from bcre_studies.advisor.scene_text import scene_text
-from bcre_studies.comparison.compare import significant
-from bcre_studies.running.run import COARSEST, require_runnable
+from bcre_studies.advisor.widened import advise_with_reference
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.models.bcre import COARSEST
+from bcre_studies.models.registry import AUTOMATON, BCRE, CANDIDATES, SCHEMES
+from bcre_studies.running.place import Origin
+from bcre_studies.running.run import require_runnable
 from bcre_studies.system.files import replace_text, require_writable
-from bcre_studies.timing.costs import recorded
+from bcre_studies.timing.costs import Costs, measure, recorded
 
-NAMES = {
-    "upwind": "automaton, upwind",
-    "calibrated": "automaton, calibrated",
-    "limited": "automaton, flux-limited",
-    "pde": "BCRE on py-pde",
-}
+FOR = "# advised for "
+"""So begins the line of an advised scene that names the scene which was asked about."""
 
 
-def answer(question: Question, scene: str, path: Path) -> str:
-    """Advise with pilots timed on this machine, write the scene that is advised, and tell of both.
+def answer(question: Question, origin: Origin, path: Path) -> str:
+    """Advise with pilots timed on this machine, write the advised scene, and report both.
 
     Parameters
     ----------
-    scene: what the scene is called; path: of the file that is written.
+    origin: where the scene came from; path: of the file that is written.
 
     Raises
     ------
@@ -42,7 +43,8 @@ def answer(question: Question, scene: str, path: Path) -> str:
         where the scene cannot be run; OSError where the file cannot be written.
     """
     require_writable("--out", path.parent, (path.name,))
-    require_runnable(with_model(question.scene, "pde", COARSEST), "pde", question.frames)
+    cells = max(question.scene.domain.cells, COARSEST)  # which hold the start
+    require_runnable(with_model(question.scene, BCRE.name, cells), BCRE.name, question.frames)
     console = Console(stderr=True)
     with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
         task = progress.add_task("pilots", total=None)
@@ -50,9 +52,19 @@ def answer(question: Question, scene: str, path: Path) -> str:
         def tell(pilot: str) -> None:
             progress.update(task, description=escape(f"pilot: {pilot}"), advance=1)
 
-        advice = advise(question, Effort(recorded(), tell=tell))
-    write_advised(advice, path)
-    return text(advice, scene, path)
+        advice = advise_with_reference(question, Effort(_costs(tell), tell=tell))
+    write_advised(advice, origin, path)
+    return text(advice, origin.name, path)
+
+
+def _costs(tell: Callable[[str], object]) -> Costs:
+    """What runs cost: as recorded, or measured where there is no record."""
+    try:
+        return recorded()
+    except FileNotFoundError as missing:
+        print(f"bcre: {missing}; measured now, half a minute", file=sys.stderr, flush=True)
+        tell("what runs cost")
+        return Costs(measure())
 
 
 def text(advice: Advice, scene: str, path: Path) -> str:
@@ -65,19 +77,30 @@ def text(advice: Advice, scene: str, path: Path) -> str:
     return "\n".join(_lines(advice, scene, path))
 
 
-def write_advised(advice: Advice, path: Path) -> None:
+def advised_of(path: Path) -> list[str]:
+    """The scene that a file was advised for; none where it says nothing."""
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, ValueError):
+        return []
+    return [line.removeprefix(FOR) for line in lines if line.startswith(FOR)]
+
+
+def write_advised(advice: Advice, origin: Origin, path: Path) -> None:
     """Write the scene on the advised model and cells, where there is one."""
     if not advice.options:
         return
     best, question = advice.options[0], advice.question
     advised = with_model(question.scene, best.model, best.cells)
-    comment = f"Advised for {question.observable}: {NAMES[best.model]}, {best.cells} cells."
-    replace_text(path, scene_text(advised, path.parent, comment))
+    comments = f"# {_option(best)}, for {question.observable}", FOR + origin.seen_from(path.parent)
+    replace_text(path, scene_text(advised, path.parent, *comments))
 
 
 def _lines(advice: Advice, scene: str, path: Path) -> Iterator[str]:
     question = advice.question
     yield f"asked:          {scene}: {_asked(question)}"
+    if advice.instead_of is not None:
+        yield from _instead(advice, advice.instead_of)
     if advice.closed is not None:
         form, error = advice.closed
         yield f"closed form:    {form.name}, error {_percent(error)}, at no cost: {form.formula}"
@@ -89,16 +112,29 @@ def _lines(advice: Advice, scene: str, path: Path) -> Iterator[str]:
         name = "runner-up:" if place == 0 else "left out:"
         yield f"{name:16}{_option(option)}{_against(advice, option)}"
     for model, why in advice.left_out.items():
-        yield f"left out:       {NAMES[model]}: {why}"
+        yield f"left out:       {CANDIDATES[model].label}: {why}"
     if math.isfinite(advice.reference_error):
         known = f"its own error {_percent(advice.reference_error)}"
-        yield f"reference:      BCRE on {advice.reference_cells} cells, {known}"
+        kappa = question.scene.material.kappa
+        named = f" with kappa = {kappa:g}" if kappa else ""
+        yield f"reference:      BCRE{named} on {advice.reference_cells} cells, {known}"
     yield f"pilots:         {advice.pilots_s:.2g} s"
     if advice.options:
-        model = "pde" if advice.options[0].model == "pde" else "ca"
+        model = AUTOMATON.name if advice.options[0].model in SCHEMES else BCRE.name
         yield f"wrote:          {path}"
         command = f"bcre run {shlex.quote(str(path))} --model {model}{_frames(question)}"
         yield f"run it:         {command}"
+
+
+def _instead(advice: Advice, first: Advice) -> Iterator[str]:
+    """Which reference stands in for BCRE with kappa = 0, and why."""
+    scene = advice.question.scene
+    yield f"unresolved:     {first.why}"
+    yield (
+        f"instead:        kappa = {scene.material.kappa:g} = gamma d/2, the curvature that the "
+        f"scene's cells of d = {scene.d:g} add to the automaton"
+    )
+    yield f"{'':16}all errors below are from BCRE with this kappa, and the advised scene has it"
 
 
 def _asked(question: Question) -> str:
@@ -126,7 +162,7 @@ def _recommended(advice: Advice, best: Option) -> Iterator[str]:
 
 
 def _option(option: Option) -> str:
-    return f"{NAMES[option.model]}, {option.cells} cells"
+    return f"{CANDIDATES[option.model].label}, {option.cells} cells"
 
 
 def _against(advice: Advice, option: Option) -> str:

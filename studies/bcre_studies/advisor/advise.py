@@ -1,10 +1,10 @@
 r"""Which model, on which cells, answers a scene to a tolerance at the least cost, or in a time.
 
-Every model is piloted (``pilot``); from what the pilots foretell
-(``candidate``) follows on how many cells it does what is asked, and which one does
-it best (``options``). Errors are relative to BCRE, converged, with the material of
-the scene. The step follows its bounds ("auto"): the upwind rule is the more accurate the longer it
-is, (v d/2)(1 - v dt/d), the calibrated one needs a long one, and a shorter one only costs more.
+Every model is piloted (``pilot``). What the pilots predict (``candidate``) gives the cells on which
+a model meets the request, and ``options`` ranks the models that do. Errors are relative to BCRE,
+converged, with the material of the scene. The step follows its bounds ("auto"): the upwind rule
+gains accuracy with a longer step, (v d/2)(1 - v dt/d), and the calibrated rule needs a long one;
+a shorter step only costs more.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import bcre_pde
-from bcre_studies.advisor.candidate import MODELS, SAFETY, SCHEMES, Candidate
+from bcre_studies.advisor.candidate import SAFETY, Candidate
 from bcre_studies.advisor.closed_forms import ClosedForm, closed_form
 from bcre_studies.advisor.deviation import deviation
 from bcre_studies.advisor.options import PRECISE, Option, confirmed, predicted_seconds
@@ -27,21 +27,21 @@ from bcre_studies.advisor.pilot import (
     Reference,
     candidate,
     reference,
-    sees_start,
     warm_up,
 )
 from bcre_studies.advisor.question import Question
-from bcre_studies.models.simulate import problem_of
+from bcre_studies.models.bcre import problem_of
+from bcre_studies.models.registry import BCRE, CANDIDATES, SCHEMES
 from bcre_studies.timing.costs import Costs, closures_of
 
 RESOLVED, USABLE = 0.1, 0.25
-"""The reference is refined to this part of the tolerance; of use if it comes to that part."""
+"""Target and largest usable error of the reference, as parts of the tolerance."""
 
 GONE = 1e-6
-"""A rolling layer of which no more is left has gone: there is nothing to be right about."""
+"""A rolling layer is gone once less than this part of it is left: its error means nothing."""
 
 LEAST_S, MOST_S, PART = 10.0, 30.0, 0.1
-"""Pilots may take this part of a full reference run, but at least and at most so many seconds."""
+"""Pilots may take this part of a full reference run, within these limits in seconds."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Effort:
         advised on every machine.
     seconds: that pilots may take; None for :data:`PART` of a full reference run, within bounds.
     finest: cells of the automaton's finest pilot.
-    tell: is told which pilot runs.
+    tell: called with the name of each pilot before it runs.
     """
 
     costs: Costs
@@ -78,8 +78,10 @@ class Advice:
     """What is advised.
 
     ``options`` are the models that do what was asked for, the best one first; where there is none,
-    ``why`` says for what reason. ``left_out`` tells of the other models why they do not; ``closed``
-    is a closed form that does, with its error.
+    ``why`` says for what reason. ``left_out`` gives the reason for each other
+    model; ``closed`` is a closed form that meets the request, with its error. ``needs_width`` says
+    that a scarp with kappa = 0 left the reference unresolved, and ``instead_of`` holds the advice
+    that ended so, where this one has another reference (``widened``).
     """
 
     question: Question
@@ -90,6 +92,8 @@ class Advice:
     reference_error: float = math.inf
     pilots_s: float = 0.0
     why: str = ""
+    needs_width: bool = False
+    instead_of: Advice | None = None
 
 
 def advise(question: Question, effort: Effort) -> Advice:
@@ -106,6 +110,7 @@ def advise(question: Question, effort: Effort) -> Advice:
             reference_error=against.error,
             pilots_s=allowance.spent,
             why=_unresolved(question, against),
+            needs_width=_needs_width(question, against),
         )
     found, left_out = _piloted(question, against, effort, allowance)
     options, reasons = confirmed(question, found, against, allowance)
@@ -129,14 +134,14 @@ def _full_reference(question: Question, costs: Costs) -> float:
         problem_of(scene).material, scene.domain.length / FINEST, float(R.max())
     )
     return costs.seconds(
-        "pde", FINEST, scene.time.until / step, closures_of(scene), question.frames
+        BCRE.name, FINEST, scene.time.until / step, closures_of(scene), question.frames
     )
 
 
 def _reference(question: Question, effort: Effort, allowance: Allowance) -> Reference:
     scene = question.scene
     if effort.clocked:
-        for model in MODELS:
+        for model in CANDIDATES:
             effort.tell(f"{model}, compiling")
             warm_up(scene, model)
     wanted = RESOLVED * question.tolerance
@@ -181,12 +186,10 @@ def _unresolved(question: Question, against: Reference) -> str:
     """Why the error of the reference is not small."""
     cells = against.run.x.size
     found = f"{question.observable} of BCRE is known to {against.error:.2g} only, on {cells} cells"
-    if not sees_start(question.scene, cells):
-        return f"{cells} cells, the finest pilots, are wider than parts of the start"
-    left = float(against.run.R[-1].mean() / (against.run.R[0].mean() or 1.0))
+    left = _left(against)
     if question.observable == "R" and left < GONE:
         return f"{found}: {left:.1g} of the layer is left in the domain, which is what R is then"
-    if against.has_scarp and question.scene.material.kappa == 0:
+    if _needs_width(question, against):
         return (
             f"{found}: past a scarp with kappa = 0 it has no converged solution to be near to; "
             "a material.kappa > 0 gives the scarp a width"
@@ -194,6 +197,18 @@ def _unresolved(question: Question, against: Reference) -> str:
     if cells < FINEST:
         return f"{found}, and finer pilots would take too long"
     return f"{found}, the finest pilots"
+
+
+def _needs_width(question: Question, against: Reference) -> bool:
+    """Whether it is a scarp with kappa = 0 that leaves the reference unresolved."""
+    material = question.scene.material
+    is_gone = question.observable == "R" and _left(against) < GONE
+    return against.has_scarp and material.kappa == 0 and material.gamma > 0 and not is_gone
+
+
+def _left(against: Reference) -> float:
+    """The part of the rolling layer that is left at the end."""
+    return float(against.run.R[-1].mean() / (against.run.R[0].mean() or 1.0))
 
 
 def _closed(question: Question, against: Reference) -> tuple[ClosedForm, float] | None:

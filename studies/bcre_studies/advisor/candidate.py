@@ -1,4 +1,4 @@
-r"""What pilots of a model foretell: its error, its steps and how many cells it needs.
+r"""What the pilots of a model predict: its error, its steps and how many cells it needs.
 
 Between two pilots the error and the steps are interpolated, log in log of the cells N. Beyond the
 last of them
@@ -17,19 +17,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import nnls
 
+from bcre_studies.models.registry import CANDIDATES
 from bcre_studies.scenes.domain import Array
 
-SCHEMES = ("upwind", "calibrated", "limited")
-MODELS = (*SCHEMES, "pde")
-
-ORDER = {"upwind": 1.0, "calibrated": 2.0, "limited": 2.0, "pde": 5.0}
+ORDER = dict(zip(CANDIDATES, (1.0, 2.0, 2.0, 5.0), strict=True))
 """The order that a model can reach where the layers are smooth."""
 
 LEAST_ORDER = 0.3
 """A model that shows less does not converge as far as the pilots can see."""
 
 FARTHEST = 16.0
-"""No error is foretold for grids more than so many times finer than a pilot."""
+"""Errors are extrapolated to grids at most this many times finer than a pilot."""
 
 HALF = 0.5
 """Nor from pilots that are more than half wrong: the error does not fall as a power of d yet."""
@@ -59,7 +57,7 @@ class Pilot:
 class Candidate:
     """A model with at least two pilots, coarsest first.
 
-    ``converges`` tells whether finer cells bring it to BCRE with the scene's own material at all.
+    ``converges``: whether finer cells bring it to BCRE with the scene's own material at all.
     """
 
     model: str

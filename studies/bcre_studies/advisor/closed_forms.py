@@ -7,8 +7,9 @@ r"""Closed forms that a scene may have, and their layers at every time.
   with sigma = gamma (S - Sc); a uniform layer, where the ends are joined, is A e^(sigma t). It is
   exact where gamma = 0 or S = Sc (E = 0), as far as the ends are away; else as far as R is too thin
   to move the slope. h follows it by h(t) = h(0) - sigma int R dt.
-* **Climbing wave**: D = kappa = 0, joined ends, and R + u + (v/gamma) ln R the same everywhere:
-  R(x, t) = R0(x + gamma R t) until it breaks (:mod:`bcre_pde.exact`).
+* **Climbing wave**: D = kappa = 0, joined ends, and u the surface of a simple wave, in BCRE
+  R + u + (v/gamma) ln R the same everywhere: R(x, t) = R0(x + c(R) t), c = gamma R, until it breaks
+  (:mod:`bcre_pde.simple_wave`).
 
 How far a form is off is measured, as with every other candidate; here is decided only whether the
 formula can be written down.
@@ -18,19 +19,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 
-import bcre_pde
-from bcre_pde.exact import breaking_time, climbing_wave, climbing_wave_surface
-from bcre_studies.models.simulate import Run, as_run, problem_of
+from bcre_pde import simple_wave
+from bcre_studies.models.bcre import problem_of
+from bcre_studies.models.run import Run
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene
 from bcre_studies.scenes.terms import Gaussian, Incline, Uniform
 
 SAME = 1e-3
-"""R + u + (v/gamma) ln R is taken to be the same everywhere if it varies by this part of R."""
+"""A surface is that of a simple wave if it is so to this part of R."""
 
 NODES = 256
 """Gauss-Legendre nodes of the time integral of R: a pulse passes over many of them."""
@@ -54,10 +55,7 @@ class ClosedForm:
         x = scene.centres(cells)
         h, R = (np.array(rows) for rows in zip(*(self.layers(x, t) for t in times), strict=True))
         area = (h + R).sum(axis=1) * scene.domain.length / cells
-        solution = bcre_pde.Solution(
-            problem_of(scene), x, np.array(times), h, R, area[0] - area, 0, 0, 0.0
-        )
-        return as_run(scene, solution)
+        return Run(scene, x, np.array(times), h, R, area[0] - area, steps=0, evaluations=0)
 
 
 def closed_form(scene: Scene) -> ClosedForm | None:
@@ -119,23 +117,25 @@ def _carried(term: object, scene: Scene, x: Array, t: float) -> Array:
 
 def _climbing_wave(scene: Scene) -> ClosedForm | None:
     m, length = scene.material, scene.domain.length
-    if m.D or m.kappa or m.gamma == 0 or m.v_up is not None or scene.domain.ends == "open":
+    if m.D or m.kappa or m.gamma == 0 or scene.domain.ends != "periodic":
         return None
     x = scene.centres(4096)
     h, R = scene.initial(x)
     if not R.min() > 0:
         return None
-    carried = R + h + m.Sc * x + m.v / m.gamma * np.log(R)
-    steepest = float(np.max(np.gradient(R, x)))
-    if np.ptp(carried) > SAME * R.mean() or scene.time.until >= breaking_time(steepest, m.gamma):
+    material = problem_of(scene).material
+    speed = partial(simple_wave.climb, material)
+    level = h - simple_wave.surface(material, x, R)
+    breaking = simple_wave.breaking_time(float(np.max(np.gradient(speed(R), x))))
+    if np.ptp(level) > SAME * R.mean() or scene.time.until >= breaking:
         return None
-    constant, thickest = float(carried.mean()), float(1.01 * R.max())
+    constant, thickest = float(level.mean()), float(1.01 * R.max())
 
     def start(place: Array) -> Array:
         return scene.initial(place % length)[1]
 
     def layers(x: Array, t: float) -> tuple[Array, Array]:
-        R = climbing_wave(x, t, start, m.gamma, thickest)
-        return climbing_wave_surface(x, R, m.v, m.gamma, m.Sc) + constant, R
+        R = simple_wave.layer(x, t, start, speed, thickest)
+        return simple_wave.surface(material, x, R) + constant, R
 
     return ClosedForm("climbing wave", "R(x, t) = R0(x + gamma R t), until it breaks", layers)

@@ -8,15 +8,15 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
-from bcre_pde import grid_convergence_index
-from bcre_studies.comparison.compare import sample
-from bcre_studies.models.simulate import Run
+import bcre_pde
+from bcre_studies.models.run import Run
 from bcre_studies.observables import named as observables
-from bcre_studies.observables.named import Record
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene
 
@@ -39,7 +39,7 @@ def deviation(run: Run, reference: Run, observable: str = "R") -> float:
     observable: one of :data:`OBSERVABLES`.
     """
     if observable not in ("R", "h"):
-        return observables.change(observable, _record(reference), _record(run))
+        return observables.change(observable, reference, run)
     profile = _rolling if observable == "R" else _change
     scale = float(np.mean(np.abs(profile(reference, reference.x))))
     gap = float(np.mean(np.abs(profile(run, run.x) - profile(reference, run.x))))
@@ -48,25 +48,25 @@ def deviation(run: Run, reference: Run, observable: str = "R") -> float:
     return gap / scale if scale > 0 and math.isfinite(gap) else math.inf
 
 
-def uncertainty(fine: Run, medium: Run, coarse: Run, observable: str = "R") -> float:
-    """Grid convergence index of the finest of three runs, each on twice the cells of the last.
+def uncertainty(runs: Sequence[Run], observable: str = "R") -> float:
+    """Error of the finest of BCRE's runs, by :func:`bcre_pde.error_of_finest`.
 
     Of the deviations between them, so in their unit; infinite where one of them is.
+
+    Parameters
+    ----------
+    runs: at least three, each on twice the cells of the one before.
     """
-    last = deviation(medium, fine, observable)
-    before = deviation(coarse, medium, observable)
-    if not (math.isfinite(last) and math.isfinite(before)):
+    pairs = itertools.pairwise(runs[-bcre_pde.LEAST_GRIDS :])
+    changed = [deviation(coarse, fine, observable) for coarse, fine in pairs]
+    if not all(map(math.isfinite, changed)):
         return math.inf
-    return grid_convergence_index(0.0, last, last + before).error
+    return bcre_pde.error_of_finest(changed, jump=bcre_pde.jump_stands(*runs[-2:])).error
 
 
 def _rolling(run: Run, x: Array) -> Array:
-    return sample(run, x, "R")
+    return run.sample(x)
 
 
 def _change(run: Run, x: Array) -> Array:
-    return sample(run, x, "u") - sample(run, x, "u", frame=0)
-
-
-def _record(run: Run) -> Record:
-    return Record(run.scene, run.x, run.t, run.h, run.R)
+    return run.sample(x, "u") - run.sample(x, "u", frame=0)

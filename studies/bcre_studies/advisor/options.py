@@ -41,8 +41,8 @@ def confirmed(
 ) -> tuple[tuple[Option, ...], dict[str, str]]:
     """The options, each of them run where the allowance permits, and why other models are none.
 
-    What was foretold of an option is replaced by what it does. That may change how many cells it
-    needs, so it is asked again, until every option within reach of the pilots has been run.
+    A measured value replaces the predicted one. That may change how many cells an option needs, so
+    the search repeats until every option within reach of the pilots has been run.
     """
     models = {model.model: model for model in found}
     beyond: set[str] = set()
@@ -106,7 +106,7 @@ def _never(question: Question, model: Candidate) -> str:
     if not model.converges:
         return f"{reached}, and it has no kappa: finer cells lead it elsewhere"
     if model.pilots[-2].error > HALF:
-        return f"{reached}, too much to foretell what finer ones do"
+        return f"{reached}, too far to predict finer grids"
     return f"{reached} and falls as d^{model.order:.2g}: not within {FARTHEST:.0f} times as many"
 
 

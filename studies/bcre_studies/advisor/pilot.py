@@ -1,7 +1,8 @@
 r"""Short runs on coarse grids: a reference with its own error, and every model against it.
 
-All models are run on 25, 50, 100, ... cells. The reference is the finest pilot of BCRE on py-pde,
-refined until its grid convergence index (:mod:`bcre_pde.refine`) is small against the tolerance,
+All models are run on 25, 50, 100, ... cells, from the first that hold the start
+(:mod:`bcre_studies.scenes.held`). The reference is the finest pilot of BCRE on py-pde,
+refined until its own error (:mod:`bcre_pde.convergence`) is small against the tolerance,
 or until its part of the allowance is spent. A model is piloted until it is known well enough.
 """
 
@@ -13,15 +14,14 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 import bcre_pde
-from bcre_studies.advisor.candidate import SCHEMES, Candidate, Pilot
+from bcre_studies.advisor.candidate import Candidate, Pilot
 from bcre_studies.advisor.deviation import deviation, uncertainty
-from bcre_studies.models.simulate import Run, as_run, problem_of, rule_of, run_automaton
-from bcre_studies.scenes.domain import Array
+from bcre_studies.models.automaton import rule_of
+from bcre_studies.models.bcre import problem_of
+from bcre_studies.models.registry import BCRE, CANDIDATES, SCHEMES
+from bcre_studies.models.run import Run
 from bcre_studies.scenes.scene import Scene
-from bcre_studies.scenes.terms import Gaussian
 from bcre_studies.timing.costs import Costs, closures_of
 
 COARSEST = 25
@@ -34,12 +34,6 @@ REFERENCE_SHARE = 0.5
 
 SHORT_S = 0.02
 """Shorter pilots are run three times, for their time; the median counts."""
-
-SEEN = 0.8
-"""A grid sees the start if it sees this part of the ups and downs of both layers."""
-
-SHARP = 0.75
-"""A scarp: the largest fall of u from cell to cell stays by this part as the cells are halved."""
 
 
 class PilotError(ValueError):
@@ -104,10 +98,10 @@ class Allowance:
 
 def with_model(scene: Scene, model: str, cells: int) -> Scene:
     """The scene on so many cells of a model, the automaton with a step that follows its bounds."""
+    changed = CANDIDATES[model].adapter().on(scene, cells)
     if model in SCHEMES:
-        return scene.with_changes(cells=cells, step="auto", scheme=model)
-    solver = {"solver.cells": cells, "solver.method": "runge-kutta", "solver.tolerance": 1e-6}
-    return scene.with_changes(**solver)
+        return changed
+    return changed.with_changes(method="runge-kutta", tolerance=1e-6)
 
 
 def run_model(
@@ -118,33 +112,29 @@ def run_model(
     stop: Callable[[object], bool] | None = None,
 ) -> Run:
     """The scene in a model on so many cells, recorded at the given times."""
-    if model in SCHEMES:
-        return run_automaton(with_model(scene, model, cells), times, stop)
-    return as_run(scene, bcre_pde.solve(problem_of(scene), times, cells, stop=stop))
+    return CANDIDATES[model].run(with_model(scene, model, cells), times, stop=stop)
 
 
 def warm_up(scene: Scene, model: str) -> None:
     """Compile what a model needs, so that no pilot is timed with it."""
-    run_model(scene, model, [0.0, 1e-9 * scene.time.until], COARSEST)
+    run_model(scene, model, [0.0, 1e-9 * scene.time.until], coarsest(scene))
 
 
-def sees_start(scene: Scene, cells: int) -> bool:
-    """Whether the centres of so many cells see what stands at the start.
+def coarsest(scene: Scene, finest: int = FINEST) -> int:
+    """Cells of the coarsest pilot: grids that all miss a narrow pulse would agree, on nothing.
 
-    Grids that all miss a narrow pulse agree with each other on nothing. Compared are the total
-    variations of R and of u, with those on the finest grid's sixteenth cells and at every pulse.
+    Raises
+    ------
+    PilotError
+        where so few grids up to ``finest`` cells hold the start that no error could be known.
     """
-    pulses = [term.centre for term in scene.rolling if isinstance(term, Gaussian)]
-    every = np.sort(np.concatenate([scene.centres(16 * FINEST), pulses]))
-    inside = every[(every >= 0) & (every <= scene.domain.length)]
-    coarse, fine = (_variations(scene, x) for x in (scene.centres(cells), inside))
-    return bool((coarse >= SEEN * fine - 1e-12).all())
-
-
-def _variations(scene: Scene, x: Array) -> Array:
-    h, R = scene.initial(x)
-    u = h + scene.material.Sc * x
-    return np.array([np.abs(np.diff(layer)).sum() for layer in (u, R)])
+    cells = COARSEST
+    most = finest >> (LEAST_PILOTS - 1)
+    while not scene.holds(cells):
+        cells *= 2
+        if cells > most:
+            raise PilotError(f"{most} cells are wider than parts of the start")
+    return cells
 
 
 @dataclass(frozen=True)
@@ -162,13 +152,12 @@ class Reference:
     @property
     def has_scarp(self) -> bool:
         """Whether at some time u falls over a single cell, whatever the cells: a jump."""
-        coarse, fine = (float(np.max(np.abs(np.diff(run.u, axis=1)))) for run in self.runs[-2:])
-        return fine > SHARP * coarse
+        return bcre_pde.jump_stands(*self.runs[-2:])
 
     def candidate(self, observable: str) -> Candidate:
         """BCRE itself as one of the models; the error of its finest pilot is the reference's."""
         errors = [deviation(run, self.run, observable) for run in self.runs[:-1]]
-        return Candidate("pde", _pilots(self.runs, [*errors, self.error]))
+        return Candidate(BCRE.name, _pilots(self.runs, [*errors, self.error]))
 
 
 def reference(
@@ -182,22 +171,21 @@ def reference(
         where not even the coarsest grids can be solved in time.
     """
     runs: list[Run] = []
-    cells, error = COARSEST, math.inf
+    cells, error = coarsest(scene), math.inf
     while cells <= FINEST and error > wanted:
-        steps = _next_steps(scene, "pde", runs, cells)
-        expected = allowance.expected(scene, "pde", cells, steps, len(times))
+        steps = _next_steps(scene, BCRE.name, runs, cells)
+        expected = allowance.expected(scene, BCRE.name, cells, steps, len(times))
         needed = len(runs) < LEAST_PILOTS
         if not allowance.permits(expected, 1.0 if needed else REFERENCE_SHARE):
             break
         try:
-            runs.append(allowance.take(scene, "pde", times, cells))
+            runs.append(allowance.take(scene, BCRE.name, times, cells))
         except PilotError:
             if needed:
                 raise
             break
         if len(runs) >= LEAST_PILOTS:
-            seen = sees_start(scene, cells)
-            error = uncertainty(runs[-1], runs[-2], runs[-3], observable) if seen else math.inf
+            error = uncertainty(runs, observable)
         cells *= 2
     if len(runs) < LEAST_PILOTS:
         raise PilotError(f"{cells} cells of BCRE would take about {expected:.2g} s")
@@ -223,7 +211,7 @@ def candidate(
     """
     runs: list[Run] = []
     errors: list[float] = []
-    cells = COARSEST
+    cells = coarsest(scene, allowance.finest)
     while cells <= allowance.finest:
         steps = _next_steps(scene, model, runs, cells)
         expected = allowance.expected(scene, model, cells, steps, len(times))

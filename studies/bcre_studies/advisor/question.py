@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from bcre_studies.advisor.deviation import posed
-from bcre_studies.models.simulate import frame_times
+from bcre_studies.models.run import frame_times
 from bcre_studies.scenes.scene import Scene
 
 

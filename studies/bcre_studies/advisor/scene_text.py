@@ -10,21 +10,21 @@ from typing import Any
 from bcre_studies.scenes.scene import Scene
 
 
-def scene_text(scene: Scene, folder: Path, comment: str = "") -> str:
+def scene_text(scene: Scene, folder: Path, *comments: str) -> str:
     """The TOML text of a scene to be kept in ``folder``, as ``scenes.scene.load`` reads it.
 
     Tables keep their place: their paths are given relative to ``folder``.
 
     Parameters
     ----------
-    comment: one line that stands at the top.
+    comments: lines that stand at the top, each beginning with #.
     """
     data = scene.model_dump(exclude_unset=True, mode="json")
     for term in (*data.get("surface", ()), *data.get("rolling", ())):
         if "file" in term:
             path = (scene._folder / term["file"]).resolve()
             term["file"] = os.path.relpath(path, folder.resolve())
-    lines = [f"# {comment}"] if comment else []
+    lines = [*comments]
     lines += _pairs({key: value for key, value in data.items() if _is_plain(value)})
     for key, value in data.items():
         if isinstance(value, dict):

@@ -2,18 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
-from enum import StrEnum
+from functools import partial
 
-
-class Verdict(StrEnum):
-    """The four words with which a comparison can end, from best to worst."""
-
-    AGREE = "agree"
-    AGREE_EFFECTIVE = "agree once the automaton's own diffusion is counted"
-    UNRESOLVED = "unresolved"
-    DISAGREE = "disagree"
+from bcre_studies.comparison.verdict import Verdict
 
 
 @dataclass(frozen=True)
@@ -26,7 +18,9 @@ class Claim:
     statement: the sentence that was put to the test.
     verdict: how it ended.
     evidence: what agrees, what does not and why, with the numbers.
-    tolerance: the threshold that stood before the study ran, with its reason.
+    tolerance: the threshold that was set before the study ran, with its reason.
+    quality: whether the claim is a check of the code, or one that no measurement can refute. Such
+        a claim is reported among the quality checks, not among the verdicts on the model.
     """
 
     name: str
@@ -34,40 +28,8 @@ class Claim:
     verdict: Verdict
     evidence: str
     tolerance: str
+    quality: bool = False
 
 
-def worst(verdicts: Iterable[str]) -> Verdict:
-    """The worst of several verdicts: a claim about many cases is as good as its worst case."""
-    ranking = list(Verdict)
-    return max((Verdict(verdict) for verdict in verdicts), key=ranking.index)
-
-
-def within(measured: float, expected: float, relative: float) -> Verdict:
-    """Agree where a measured number is as near to a closed form as it is said to be."""
-    near = abs(measured - expected) <= relative * abs(expected)
-    return Verdict.AGREE if near else Verdict.DISAGREE
-
-
-def verdict_of(
-    difference: float,
-    resolved: bool,
-    difference_effective: float,
-    resolved_effective: bool,
-    tolerance: float,
-) -> Verdict:
-    """The verdict of automaton against PDE.
-
-    Parameters
-    ----------
-    difference, difference_effective: relative difference from BCRE as it stands, and from BCRE
-        with the automaton's D_eff and kappa_eff.
-    resolved, resolved_effective: whether the PDE's own error is small against that difference.
-    tolerance: largest relative difference that counts as agreement.
-    """
-    if resolved and difference <= tolerance:
-        return Verdict.AGREE
-    if not resolved:
-        return Verdict.UNRESOLVED
-    if resolved_effective and difference_effective <= tolerance:
-        return Verdict.AGREE_EFFECTIVE
-    return Verdict.DISAGREE if resolved_effective else Verdict.UNRESOLVED
+quality_check = partial(Claim, quality=True)
+"""A claim about the code, or one that no measurement can refute."""

@@ -1,96 +1,120 @@
 """The comparison that every study makes: automaton, BCRE, and BCRE with the automaton's diffusion.
 
-The PDE is refined until the grid convergence index of what is measured is a tenth of the
-difference from the automaton (or of the tolerance, where the difference is smaller still).
+The PDE is refined until its own error in what is measured is a tenth of the difference from the
+automaton (or of the tolerance, where the difference is smaller still).
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import make_interp_spline
 
 import bcre_pde
-from bcre_studies.comparison.claim import Verdict, verdict_of
-from bcre_studies.models.simulate import (
-    Run,
-    as_run,
-    effective_problem_of,
-    problem_of,
-    run_automaton,
-)
-from bcre_studies.scenes.domain import Array
+from bcre_pde import Measured
+from bcre_studies.comparison.difference import relative_difference
+from bcre_studies.comparison.error import allowed_error, relative_error
+from bcre_studies.comparison.rounding import DIGITS, finest_of, shown, significant
+from bcre_studies.comparison.verdict import Verdict, verdict_of
+from bcre_studies.models.bcre import problem_of, run_of
+from bcre_studies.models.effective import effective
+from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE
+from bcre_studies.models.run import Run
 from bcre_studies.scenes.scene import Scene
 
-SHARE = 0.1
-"""The PDE's error may be this part of the difference that is reported."""
-
 Measure = Callable[[Run], ArrayLike]
+MeasureEach = Callable[[Run], Sequence[Any]]
+Scales = Sequence[float | None]
 
 
 @dataclass(frozen=True)
 class Comparison:
     """One measured quantity in the automaton, in BCRE and in BCRE with D_eff and kappa_eff.
 
-    The values are numbers or profiles; errors are grid convergence indices in the unit of the
-    value (mean absolute value of a profile), differences relative to the mean absolute PDE value.
+    Parameters
+    ----------
+    automaton: a number or a profile.
+    pde, effective: the same in BCRE, with the error in the unit of the value.
+    tolerance: largest relative difference that counts as agreement.
+    scale: for numbers that may vanish, what differences are relative to, > 0; it also sets the last
+        digit that is shown. Left out, the PDE's own mean absolute value.
     """
 
     automaton: Any
-    pde: bcre_pde.Refined
-    effective: bcre_pde.Refined
+    pde: Measured
+    effective: Measured
     tolerance: float
+    scale: float | None = None
 
     @property
     def difference(self) -> float:
         """Relative difference of the automaton from BCRE as it stands."""
-        return relative_difference(self.automaton, self.pde.measured)
+        return relative_difference(self.automaton, self.pde.value, self.scale)
 
     @property
     def difference_effective(self) -> float:
         """Relative difference of the automaton from BCRE with D_eff and kappa_eff."""
-        return relative_difference(self.automaton, self.effective.measured)
+        return relative_difference(self.automaton, self.effective.value, self.scale)
+
+    def is_resolved(self, pde: Measured) -> bool:
+        """Whether the error of one of the two is small against its difference."""
+        return pde.error <= allowed_error(self.automaton, pde.value, self.tolerance, self.scale)
 
     @property
     def verdict(self) -> Verdict:
-        """See :func:`bcre_studies.comparison.claim.verdict_of`."""
+        """See :func:`bcre_studies.comparison.verdict.verdict_of`."""
         return verdict_of(
             self.difference,
-            self.pde.resolved,
+            self.is_resolved(self.pde),
             self.difference_effective,
-            self.effective.resolved,
+            self.is_resolved(self.effective),
             self.tolerance,
         )
 
-    def row(self) -> dict[str, Any]:
-        """The comparison as the columns that all tables share, rounded as its errors justify."""
+    def row(
+        self, automaton_theory: float | None = None, pde_theory: float | None = None
+    ) -> dict[str, Any]:
+        """The comparison as the columns that all tables share, rounded as its errors justify.
+
+        Closed forms have a column where they are given. Numbers of cells and relative errors have
+        one where BCRE was solved on a series of grids, and single values where no profile is
+        compared.
+        """
+        finest = finest_of(self.scale)
+        on_grids = bool(self.pde.cells)
         row: dict[str, Any] = {}
         if np.ndim(self.automaton) == 0:
-            row["automaton"] = significant(float(self.automaton), 5)
-            row["pde"] = to_error(float(self.pde.measured), self.pde.error)
-            row["pde_error"] = significant(self.pde.error, 1)
-            row["pde_effective"] = to_error(float(self.effective.measured), self.effective.error)
-            row["pde_effective_error"] = significant(self.effective.error, 1)
-        row["difference"] = significant(self.difference, 3)
-        row["difference_error"] = significant(relative_error(self.pde), 1)
-        row["difference_effective"] = significant(self.difference_effective, 3)
-        row["difference_effective_error"] = significant(relative_error(self.effective), 1)
-        row["pde_cells"] = self.pde.cells[-1]
-        row["verdict"] = str(self.verdict)
-        return row
+            row[AUTOMATON.column] = shown(float(self.automaton), finest)
+            if automaton_theory is not None:
+                row[f"{AUTOMATON.column}_theory"] = shown(automaton_theory, finest)
+            row |= _with_error(BCRE.column, self.pde, finest)
+            if pde_theory is not None:
+                row[f"{BCRE.column}_theory"] = shown(pde_theory, finest)
+            row |= _with_error(EFFECTIVE.column, self.effective, finest)
+        row["difference"] = significant(round(self.difference, DIGITS), 3)
+        if on_grids:
+            row["difference_error"] = significant(relative_error(self.pde, self.scale), 1)
+        row["difference_effective"] = significant(round(self.difference_effective, DIGITS), 3)
+        if on_grids:
+            own_error = relative_error(self.effective, self.scale)
+            row["difference_effective_error"] = significant(own_error, 1)
+            row["pde_cells"] = self.pde.cells[-1]
+        return row | {"verdict": str(self.verdict)}
+
+
+def _with_error(name: str, pde: Measured, finest: float) -> dict[str, float]:
+    error = max(pde.error, finest)
+    return {
+        name: shown(float(pde.value), finest, error),
+        f"{name}_error": significant(error, 1),
+    }
 
 
 def compare(
-    scene: Scene,
-    times: Sequence[float],
-    measure: Measure,
-    tolerance: float,
-    **refinement: Any,
+    scene: Scene, times: Sequence[float], measure: Measure, tolerance: float, /, **refinement: Any
 ) -> Comparison:
     """Measure the same thing on the automaton's run and on refined solutions of BCRE.
 
@@ -100,75 +124,93 @@ def compare(
     times: when they are recorded; ``measure`` sees all of them.
     measure: a number, or a profile at positions that do not depend on the run's grid.
     tolerance: largest relative difference that counts as agreement.
-    refinement: options of :func:`bcre_pde.solve_refined`.
+    refinement: options of :func:`bcre_pde.solve_refined`, among them the solver's ``tolerance``.
     """
-    automaton = measure(run_automaton(scene, times))
-    return Comparison(
-        automaton=automaton,
-        pde=refine(scene, problem_of(scene), times, measure, automaton, tolerance, **refinement),
-        effective=refine(
-            scene, effective_problem_of(scene), times, measure, automaton, tolerance, **refinement
-        ),
-        tolerance=tolerance,
+    (comparison,) = compare_each(
+        scene, times, lambda run: [measure(run)], [None], tolerance, **refinement
+    )
+    return comparison
+
+
+def compare_each(
+    scene: Scene,
+    times: Sequence[float],
+    measure: MeasureEach,
+    scales: Scales,
+    tolerance: float,
+    /,
+    **refinement: Any,
+) -> list[Comparison]:
+    """Compare several numbers or profiles, measured on the same runs, each by itself.
+
+    Parameters
+    ----------
+    scene, times, tolerance, refinement: as for :func:`compare`.
+    measure: the quantities of a run.
+    scales: what the difference of each is relative to, see :class:`Comparison`.
+    """
+    automaton = measure(AUTOMATON.run(scene, times))
+    in_both = [
+        refine_each(solved, times, measure, automaton, scales, tolerance, **refinement)
+        for solved in (scene, effective(scene))
+    ]
+    return [
+        Comparison(value, nominal, with_own, tolerance, scale)
+        for value, nominal, with_own, scale in zip(automaton, *in_both, scales, strict=True)
+    ]
+
+
+def refine_each(
+    scene: Scene,
+    times: Sequence[float],
+    measure: MeasureEach,
+    automaton: Sequence[Any],
+    scales: Scales,
+    tolerance: float,
+    /,
+    **refinement: Any,
+) -> list[Measured]:
+    """Solve until each error is :data:`SHARE` of the difference from the automaton's value.
+
+    Of the grids the coarsest is the first that can hold the start of the scene.
+    """
+    coarsest = refinement.pop("coarsest", bcre_pde.COARSEST)
+    while not scene.holds(coarsest):
+        coarsest *= 2
+
+    def allowed(values: Sequence[Any]) -> list[float]:
+        return [
+            allowed_error(own, value, tolerance, scale)
+            for own, value, scale in zip(automaton, values, scales, strict=True)
+        ]
+
+    return bcre_pde.solve_refined_each(
+        problem_of(scene),
+        times,
+        lambda solution: measure(run_of(scene, solution)),
+        allowed,
+        coarsest,
+        **refinement,
     )
 
 
 def refine(
     scene: Scene,
-    problem: bcre_pde.Problem,
     times: Sequence[float],
     measure: Measure,
     automaton: ArrayLike,
     tolerance: float,
+    /,
     **refinement: Any,
-) -> bcre_pde.Refined:
-    """Solve until the error is :data:`SHARE` of the difference from the automaton's value."""
-
-    def allowed(value: Any) -> float:
-        difference = float(np.mean(np.abs(np.asarray(value) - np.asarray(automaton))))
-        return SHARE * max(difference, tolerance * float(np.mean(np.abs(value))))
-
-    return bcre_pde.solve_refined(
-        problem, times, lambda solution: measure(as_run(scene, solution)), allowed, **refinement
+) -> Measured:
+    """:func:`refine_each` of a single quantity, compared by its own size."""
+    (measured,) = refine_each(
+        scene,
+        times,
+        lambda run: [measure(run)],
+        [automaton],
+        [None],
+        tolerance,
+        **refinement,
     )
-
-
-def sample(run: Run, x: Array, field: str = "R", frame: int = -1) -> Array:
-    """``run.R`` or ``run.u`` of one frame at positions x, by a quintic spline between cells."""
-    values = getattr(run, field)[frame]
-    if values.size == x.size and np.allclose(run.x, x, rtol=0, atol=1e-9 * run.d):
-        return np.asarray(values)
-    positions = run.x
-    if run.scene.domain.ends == "periodic":
-        length, wrap = run.scene.domain.length, 4
-        positions = np.concatenate(
-            [positions[-wrap:] - length, positions, positions[:wrap] + length]
-        )
-        values = np.concatenate([values[-wrap:], values, values[:wrap]])
-    return np.asarray(make_interp_spline(positions, values, k=5)(x))
-
-
-def relative_difference(automaton: ArrayLike, pde: ArrayLike) -> float:
-    """mean|automaton - pde| / mean|pde|: for profiles the relative L1 difference."""
-    scale = float(np.mean(np.abs(pde)))
-    gap = float(np.mean(np.abs(np.asarray(automaton) - np.asarray(pde))))
-    return gap / scale if scale > 0 else (0.0 if gap == 0 else math.inf)
-
-
-def relative_error(refined: bcre_pde.Refined) -> float:
-    """The PDE's own error relative to its mean absolute value."""
-    scale = float(np.mean(np.abs(refined.measured)))
-    return refined.error / scale if scale > 0 else math.inf
-
-
-def significant(value: float, digits: int) -> float:
-    """Rounded to so many significant digits."""
-    return float(f"{value:.{digits - 1}e}") if math.isfinite(value) else value
-
-
-def to_error(value: float, error: float, most: int = 5) -> float:
-    """Rounded to the place of its error's first digit, ``most`` significant digits at the most."""
-    if not (math.isfinite(error) and error > 0 and math.isfinite(value) and value):
-        return significant(value, most)
-    digits = math.floor(math.log10(abs(value))) - math.floor(math.log10(error)) + 1
-    return significant(value, min(max(digits, 1), most))
+    return measured

@@ -1,49 +1,51 @@
-"""An automaton of the height alone (Bak, Tang and Wiesenfeld 1988, for a continuous height).
+"""The automaton of the height alone (``bcre_ca.height_only``), which has no rolling layer.
 
-    f(i) = (1/4) max(0, h(i) - h(i+1) - Sc d)        h(i) += f(i-1) - f(i)
-
-with a closed top and the last cell held, where sand leaves; or periodic in h + Sc x.
+What rolls at the start is laid on the surface, which settles at once: at t = 0 the record shows it
+as laid, at every later time as settled. Its steps are no steps of time.
 """
 
 from __future__ import annotations
 
-import numba
+import time
+from collections.abc import Sequence
+
 import numpy as np
 
-SHARE = 0.25
-SETTLED = 1e-9
-"""The pile has settled when no cell sheds more than this in a step (a length)."""
+from bcre_ca.height_only import settled
+from bcre_studies.models.adapter import Adapter, Stop
+from bcre_studies.models.run import Run
+from bcre_studies.scenes.scene import Scene
 
 
-@numba.njit(cache=True)
-def settle(h, fall, periodic):  # type: ignore[no-untyped-def]
-    """The first of :func:`settled`, the height alone."""
-    return settled(h, fall, periodic)[0]
+class HeightOnly(Adapter):
+    """The one-variable control; it needs no more than :meth:`run`."""
 
+    ends = ("open", "periodic")
+    admits = ()
 
-@numba.njit(cache=True)
-def settled(h, fall, periodic):  # type: ignore[no-untyped-def]
-    """The height h, shape (N,), once no cell sheds more than :data:`SETTLED`, and after how many
-    steps.
-
-    Parameters
-    ----------
-    h: height at the cell centres.
-    fall: Sc d, the largest fall from cell to cell that stands.
-    periodic: joined ends; otherwise a closed top and a last cell that is held.
-    """
-    h = h.copy()
-    last = h.size - 1
-    shed = np.empty(h.size)
-    steps = 0
-    while True:
-        for i in range(last):
-            shed[i] = SHARE * max(h[i] - h[i + 1] - fall, 0.0)
-        shed[last] = SHARE * max(h[last] - h[0] + fall * last, 0.0) if periodic else 0.0
-        if shed.max() <= SETTLED:
-            return h, steps
-        steps += 1
-        for i in range(last):
-            h[i] += shed[i - 1] - shed[i] if i > 0 or periodic else -shed[i]
-        if periodic:
-            h[last] += shed[last - 1] - shed[last]
+    def run(
+        self,
+        scene: Scene,
+        times: Sequence[float],
+        cells: int | None = None,
+        stop: Stop | None = None,
+    ) -> Run:
+        if cells is not None:
+            scene.require_held(cells)
+        x = scene.centres(cells)
+        d = scene.domain.length / x.size
+        start = np.sum(scene.initial(x), axis=0)
+        began = time.perf_counter()
+        end, shed, steps = settled(start, scene.material.Sc * d, scene.domain.ends == "periodic")
+        t = np.array(times)
+        return Run(
+            scene=scene,
+            x=x,
+            t=t,
+            h=np.where(t[:, None] > 0, end, start),
+            R=np.zeros((t.size, x.size)),
+            outflow=np.where(t > 0, d * shed, 0.0),
+            steps=steps,
+            evaluations=steps,
+            wall_s=time.perf_counter() - began,
+        )

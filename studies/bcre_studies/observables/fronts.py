@@ -6,14 +6,19 @@ for either model.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from scipy.interpolate import BarycentricInterpolator
 
-from bcre_studies.models.simulate import Run
+from bcre_studies.models.run import Run
 from bcre_studies.scenes.domain import Array
 
 SMALLEST = 1e-320
 """Stands for a dry cell where the logarithm of R is taken."""
+
+STANDING = 0.01
+"""A scarp stands once it has this part of its final height."""
 
 
 def edge(x: Array, values: Array, level: float) -> float:
@@ -104,6 +109,21 @@ def scarp_speed(run: Run, H: float, width: float = 0.1) -> float:
         return float("nan")
     passing = float(np.interp(H, np.maximum.accumulate(heights), run.t))
     return float(-np.polynomial.Polynomial.fit(run.t[near], places[near], 2).deriv()(passing))
+
+
+def climb_time(run: Run) -> float:
+    """Time in which the scarp climbs from 10 % to 90 % of the way from the pulse to the top.
+
+    Not a number where it does not come that far. The first frame must be the start.
+    """
+    heights, places = scarps(run)
+    start = float(run.x[np.argmax(run.R[0])])
+    climbed = np.where(heights > STANDING * heights.max(), (start - places) / start, 0.0)
+    highest = np.maximum.accumulate(climbed)
+    if highest[-1] < 0.9:
+        return math.nan
+    before, after = (float(np.interp(part, highest, run.t)) for part in (0.1, 0.9))
+    return after - before
 
 
 def roughness(values: Array) -> float:

@@ -21,11 +21,11 @@ whose ends are joined does not pose them.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
+from bcre_studies.models.run import Run
 from bcre_studies.observables.fronts import edge
 from bcre_studies.observables.fronts import roughness as root_mean_square
 from bcre_studies.observables.outcome import SPENT, reached_the_top
@@ -45,37 +45,22 @@ UNTOUCHED = 1e-6
 NAMES = ("slope", "roughness", "front", "eroded", "reach", "top", "R")
 
 
-@dataclass(frozen=True, eq=False)
-class Record:
-    """A run as the observables see it.
-
-    x: cell centres, (N,); t: ascending times from 0, (T,); h, R: layers, lengths, (T, N). A model
-    without a rolling layer has R = None and its last row of h alone counts.
-    """
-
-    scene: Scene
-    x: Array
-    t: Array
-    h: Array
-    R: Array | None
-
-
 def posed(scene: Scene) -> tuple[str, ...]:
     """The observables that the scene poses: without joined ends all of them."""
-    if scene.domain.ends == "open":
+    if scene.domain.ends != "periodic":
         return NAMES
     return tuple(name for name in NAMES if name not in ("front", "reach", "top"))
 
 
-def change(name: str, full: Record, other: Record) -> float:
-    """Relative change of an observable; 1 where the other model does not have it.
+def change(name: str, full: Run, other: Run) -> float:
+    """Relative change of an observable; 1 where the other model has no rolling layer for it.
 
     Parameters
     ----------
     name: one of :data:`NAMES`.
     full, other: the same scene at the same times, on any cells.
     """
-    if name in ("R", "front") and other.R is None:
+    if name in ("R", "front") and full.R.any() and not other.R.any():
         return 1.0
     if name == "R":
         return _relative_l1(full, other)
@@ -90,7 +75,7 @@ def change(name: str, full: Record, other: Record) -> float:
 
 
 @lru_cache(maxsize=32)
-def scale(name: str, full: Record) -> float:
+def scale(name: str, full: Run) -> float:
     """What a change of the observable is measured against; units are those of the observable."""
     if name == "slope":
         return full.scene.material.Sc
@@ -103,89 +88,87 @@ def scale(name: str, full: Record) -> float:
         moved = float(np.sum(np.abs(full.h[-1] - full.h[0])))
         return _cell(full) * max(moved, UNTOUCHED * float(_released(full).sum()))
     if name == "R":
-        assert full.R is not None
         return float(np.mean(full.R))
     return 1.0
 
 
-def slope(record: Record) -> float:
+def slope(run: Run) -> float:
     """S = -dh/dx at the end, least squares over the middle half; dimensionless."""
-    return fitted_slope(record.x, record.h[-1])
+    return fitted_slope(run.x, run.h[-1])
 
 
-def roughness(record: Record) -> float:
+def roughness(run: Run) -> float:
     """Root mean square of h about its line, over the middle half, at the end; a length."""
-    return _roughness_of(record.x, record.h[-1])
+    return _roughness_of(run.x, run.h[-1])
 
 
-def front(record: Record) -> Array:
+def front(run: Run) -> Array:
     """x of the downhill edge of the rolling layer at every time after the start, (T - 1,); lengths.
 
     There R is :data:`FRONT` of its largest at the time. Where it is so much in the last cell, or
     nothing is left of the layer (``outcome.SPENT``), the front is at the foot.
     """
-    assert record.R is not None
-    foot = record.scene.domain.length
-    spent = SPENT * float(record.R[0].max())
+    foot = run.scene.domain.length
+    spent = SPENT * float(run.R[0].max())
     places = []
-    for R in record.R[1:]:
+    for R in run.R[1:]:
         level = FRONT * float(R.max())
         gone = R[-1] >= level or level <= FRONT * spent
-        places.append(foot if gone else -edge(-record.x[::-1], R[::-1], level))
+        places.append(foot if gone else -edge(-run.x[::-1], R[::-1], level))
     return np.array(places)
 
 
-def eroded(record: Record) -> float:
+def eroded(run: Run) -> float:
     """d sum max(h(0) - h, 0): sand that the avalanche has taken from the surface; an area."""
-    return _cell(record) * float(np.sum(np.maximum(record.h[0] - record.h[-1], 0.0)))
+    return _cell(run) * float(np.sum(np.maximum(run.h[0] - run.h[-1], 0.0)))
 
 
-def reach(record: Record) -> float:
+def reach(run: Run) -> float:
     """How far uphill of the pulse's centre the surface has changed at the end; a length.
 
     By :data:`CHANGED` of the most that it has changed anywhere; 0 where it is untouched. The centre
     is that of the rolling layer which the scene releases.
     """
-    released = _released(record)
-    changed = np.abs(record.h[-1] - record.h[0])
+    released = _released(run)
+    changed = np.abs(run.h[-1] - run.h[0])
     if not changed.max() > UNTOUCHED * float(released.max()):
         return 0.0
-    centre = float(released @ record.x / released.sum())
+    centre = float(released @ run.x / released.sum())
     level = max(CHANGED * float(changed.max()), UNTOUCHED * float(released.max()))
-    return centre - (0.0 if changed[0] >= level else edge(record.x, changed, level))
+    return centre - (0.0 if changed[0] >= level else edge(run.x, changed, level))
 
 
-def top(record: Record) -> float:
+def top(run: Run) -> float:
     """1 where the avalanche has run to the top by the end, else 0.
 
     See ``outcome.reached_the_top``. A slope no higher than repose but for rounding
     has nothing to bring down.
     """
-    repose = record.scene.material.Sc * record.x
-    start, end = record.h[0] + repose, record.h[-1] + repose
-    if not start[0] - start[-1] > UNTOUCHED * float(_released(record).max()):
+    repose = run.scene.material.Sc * run.x
+    start, end = run.h[0] + repose, run.h[-1] + repose
+    if not start[0] - start[-1] > UNTOUCHED * float(_released(run).max()):
         return 0.0
-    return float(reached_the_top(record.x, start, end))
+    return float(reached_the_top(run.x, start, end))
 
 
-def value(name: str, record: Record) -> float:
+def value(name: str, run: Run) -> float:
     """The observable as one number: of the front the last place, of R its mean."""
     if name == "front":
-        return float(front(record)[-1])
+        return float(front(run)[-1])
     if name == "R":
-        return scale(name, record)
-    return MEASURES[name](record)
+        return scale(name, run)
+    return MEASURES[name](run)
 
 
 MEASURES = {"slope": slope, "roughness": roughness, "eroded": eroded, "reach": reach, "top": top}
 
 
-def _released(record: Record) -> Array:
-    return record.scene.initial(record.x)[1]
+def _released(run: Run) -> Array:
+    return run.scene.initial(run.x)[1]
 
 
-def _cell(record: Record) -> float:
-    return record.scene.domain.length / record.x.size
+def _cell(run: Run) -> float:
+    return run.scene.domain.length / run.x.size
 
 
 def _roughness_of(x: Array, h: Array) -> float:
@@ -195,13 +178,11 @@ def _roughness_of(x: Array, h: Array) -> float:
     return root_mean_square((h - line)[middle])
 
 
-def _relative_l1(full: Record, other: Record) -> float:
+def _relative_l1(full: Run, other: Run) -> float:
     """Mean |R - R_full| over all cells and times, over the mean of R_full.
 
     On other cells both are averaged over the cells of the coarser grid.
     """
-    assert full.R is not None
-    assert other.R is not None
     cells = min(full.x.size, other.x.size)
     a, b = (_averaged(R, cells) for R in (full.R, other.R))
     gap, size = float(np.mean(np.abs(a - b))), float(np.mean(np.abs(a)))

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bcre_pde import Solution
-from bcre_studies.models.simulate import Run
+from bcre_studies.models.run import Run
 
 TOP = 0.1
 """The top is this part of the slope, counted from its upper end."""
@@ -103,7 +103,7 @@ def outcome(run: Run, centre: float) -> Outcome:
     return Outcome.STARTS if grows_uphill(run, centre) else Outcome.NO
 
 
-def decided(run: Run | Solution) -> bool:
+def decided(run: Run) -> bool:
     """Whether the outcome is known: the top has come down, or the avalanche is :data:`SPENT`."""
     return reached_the_top(run.x, run.u[0], run.u[-1]) or spent(run)
 
@@ -127,4 +127,5 @@ def slope(x: ArrayLike, h: ArrayLike) -> float:
     x, h = np.asarray(x, dtype=float), np.asarray(h, dtype=float)
     length = x[0] + x[-1]
     middle = (x >= length / 4) & (x <= length * 3 / 4)
-    return -float(np.polynomial.Polynomial.fit(x[middle], h[middle], 1).convert().coef[1])
+    from_middle = x[middle] - x[middle].mean()
+    return -float(from_middle @ h[middle] / (from_middle @ from_middle))

@@ -7,8 +7,8 @@ at the end, and in h, L1 of its change relative to that.
 * **Random scenes** (``random_scenes``): the advised model is run on the advised
   cells. A scene whose BCRE does not come that far on 1600 cells is unresolved and counted apart;
   one that does, but for which nothing was advised, is declined and counts as not met.
-* **Foretold**: on the same scenes the automaton's pilots end at 100 cells, and every scheme that
-  is foretold to meet the tolerance on finer ones is run there.
+* **Extrapolated**: on the same scenes the automaton's pilots end at 100 cells, and every scheme
+  that is predicted to meet the tolerance on finer ones is run there.
 * **Built-in scenes and one more**: every model is run on finer and finer grids until it meets the
   tolerance and stays there, and the cheapest of them is compared with what was advised.
 
@@ -24,25 +24,26 @@ import numpy as np
 import pandas as pd
 
 from bcre_studies.advisor.advise import Advice, Effort, advise
-from bcre_studies.advisor.candidate import MODELS, SCHEMES
 from bcre_studies.advisor.deviation import deviation, uncertainty
 from bcre_studies.advisor.pilot import run_model
 from bcre_studies.advisor.question import Question
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import significant
-from bcre_studies.models.simulate import Run, frame_times
-from bcre_studies.performance.random_scenes import random_scene
-from bcre_studies.performance.record.record import read
+from bcre_studies.comparison.claim import Claim, quality_check
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.comparison.wording import joined
+from bcre_studies.models.registry import BCRE, CANDIDATES, SCHEMES
+from bcre_studies.models.run import Run, frame_times
+from bcre_studies.performance.random_scenes import kind_of, random_scene
+from bcre_studies.performance.record.record import recorded as recorded_tables
 from bcre_studies.reporting import style
-from bcre_studies.scenes.listing import built_in_names
-from bcre_studies.scenes.scene import Scene, load
-from bcre_studies.sweeps.each import each
+from bcre_studies.scenes.listing import studied_names
+from bcre_studies.scenes.scene import Scene, SceneError, load
+from bcre_studies.sweeps.parallel import each
 from bcre_studies.timing.costs import closures_of, recorded
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-READS_RECORD = True  # the costs
 SCENES = 60
 TOLERANCE = 0.05
 FRAMES = 3
@@ -59,34 +60,20 @@ PILOTS_S = 3.0
 """Seconds of pilots a scene, by the recorded costs."""
 OWN = "two_pulses"
 LADDER = {
-    model: [round(smallest * 2 ** (k / 4)) for k in range(steps)]
-    for model, smallest, steps in (
-        ("upwind", 25, 33),
-        ("calibrated", 25, 25),
-        ("limited", 25, 21),
-        ("pde", 25, 17),
-    )
+    model: [round(25 * 2 ** (k / 4)) for k in range(steps)]
+    for model, steps in zip(CANDIDATES, (33, 25, 21, 17), strict=True)
 }
 """Cells tried of every model to find its cheapest: up to 6400, 1600, 800 and 400."""
 
-LOOKS = {
-    model: {"color": color, "marker": mark, "linestyle": ""}
-    for model, color, mark in (
-        ("upwind", "#b5480f", "o"),
-        ("calibrated", "#c9962b", "D"),
-        ("limited", "#7a5ea8", "v"),
-        ("pde", "#1f5a99", "s"),
-    )
-}
 FEW = 100
 """Cells of the finest pilot of the extrapolated predictions."""
 
 
 @dataclass(frozen=True)
 class Truth:
-    """BCRE on three grids, coarsest first, the last fine enough to judge by if any is."""
+    """BCRE on doubled grids, coarsest first, the last fine enough to judge by if any is."""
 
-    runs: tuple[Run, Run, Run]
+    runs: tuple[Run, ...]
 
     @property
     def run(self) -> Run:
@@ -94,9 +81,8 @@ class Truth:
         return self.runs[-1]
 
     def error(self, observable: str) -> float:
-        """Its own error, relative: a grid convergence index."""
-        coarse, medium, fine = self.runs
-        return uncertainty(fine, medium, coarse, observable)
+        """Its own error, relative."""
+        return uncertainty(self.runs, observable)
 
     def resolved(self, observable: str) -> bool:
         """Whether others can be judged by it."""
@@ -107,11 +93,11 @@ def truth(scene: Scene) -> Truth:
     """BCRE on doubled grids until all that is observed is resolved, or the finest is reached."""
     times = frame_times(scene, FRAMES)
     cells = COARSEST_TRUTH
-    runs = [run_model(scene, "pde", times, n) for n in (cells, 2 * cells)]
+    runs = [run_model(scene, BCRE.name, times, n) for n in (cells, 2 * cells)]
     while True:
         cells = 2 * runs[-1].x.size
-        runs = [*runs[-2:], run_model(scene, "pde", times, cells)]
-        found = Truth((runs[0], runs[1], runs[2]))
+        runs.append(run_model(scene, BCRE.name, times, cells))
+        found = Truth(tuple(runs))
         if cells >= FINEST_TRUTH or all(map(found.resolved, OBSERVED)):
             return found
 
@@ -152,7 +138,7 @@ def own_scene() -> Scene:
 def run() -> dict[str, pd.DataFrame]:
     """Random scenes, the same extrapolated, and what was really the cheapest."""
     both = each(_random, range(SCENES), "advice, random scenes")
-    named = each(_all_models, [*built_in_names(), OWN], "advice, all models")
+    named = each(_all_models, [*studied_names(), OWN], "advice, all models")
     return {
         "comparison": pd.DataFrame([row for rows, _ in both for row in rows]),
         "extrapolated": pd.DataFrame([row for _, rows in both for row in rows]),
@@ -173,7 +159,7 @@ def _advised(index: int, scene: Scene, observable: str, true: Truth) -> dict[str
     resolved = true.resolved(observable)
     row: dict[str, Any] = {
         "scene": index,
-        "kind": scene.title.rsplit(" ", 1)[-1],
+        "kind": kind_of(scene),
         "observable": observable,
         "model": "",
         "cells": 0,
@@ -198,7 +184,7 @@ def _advised(index: int, scene: Scene, observable: str, true: Truth) -> dict[str
 
 
 def _extrapolated(index: int, scene: Scene, true: Truth) -> list[dict[str, Any]]:
-    """Every scheme that is foretold beyond its pilots, with what it really does there."""
+    """Every scheme that is predicted beyond its pilots, with what it really does there."""
     rows = []
     for option in _advice(scene, "R", finest=FEW).options:
         if option.model in SCHEMES and FEW < option.cells <= FINEST_TRUTH:
@@ -222,7 +208,7 @@ def _all_models(name: str) -> list[dict[str, Any]]:
     true = truth(scene)
     if not true.resolved("R"):
         return [_unjudged(name, scene)]
-    cheapest = [(model, *found) for model in MODELS if (found := _least(scene, model, true))]
+    cheapest = [(model, *found) for model in CANDIDATES if (found := _least(scene, model, true))]
     best = _advice(scene, "R").options[0]
     advised = run_model(scene, best.model, frame_times(scene, FRAMES), best.cells)
     error = deviation(advised, true.run)
@@ -253,14 +239,17 @@ def _price(scene: Scene, model: str, cells: int, steps: float, frames: int = FRA
 def _unjudged(name: str, scene: Scene) -> dict[str, Any]:
     """A scene without a converged solution; the advice should say so too."""
     advice = _advice(scene, "R")
-    return {"scene": name, "result": "unresolved" if not advice.options else "not told"}
+    return {"scene": name, "result": "unresolved" if not advice.options else "not said"}
 
 
 def _least(scene: Scene, model: str, true: Truth) -> tuple[int, int] | None:
     """Fewest cells of :data:`LADDER` from which on the model meets the tolerance, and its steps."""
     found = None
     for cells in reversed(LADDER[model]):
-        run = run_model(scene, model, frame_times(scene, FRAMES), cells)
+        try:
+            run = run_model(scene, model, frame_times(scene, FRAMES), cells)
+        except SceneError:  # cells that cannot hold the start
+            break
         if deviation(run, true.run) > TOLERANCE:
             break
         found = cells, run.steps
@@ -268,14 +257,13 @@ def _least(scene: Scene, model: str, true: Truth) -> tuple[int, int] | None:
 
 
 def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
-    """Whether what is advised, foretold and cheapest is so."""
+    """Whether what is advised, extrapolated and cheapest is so."""
     table = tables["comparison"]
-    times = read().get("advice")
     return [
         *(_met(table[table["observable"] == name], name) for name in OBSERVED),
-        _foretold(tables["extrapolated"]),
+        _from_coarse_pilots(tables["extrapolated"]),
         _cheapest(tables["cheapest"]),
-        *([] if times is None else [_in_time(times)]),
+        _in_time(recorded_tables("advice")["advice"]),
     ]
 
 
@@ -285,7 +273,7 @@ def _met(table: pd.DataFrame, observable: str) -> Claim:
     share = len(met) / len(judged)
     off = (met["true_error"] / met["predicted_error"]).agg(["min", "max"])
     forms = judged["closed_form_error"].dropna()
-    return Claim(
+    return quality_check(
         name=f"tolerance met in {observable}",
         statement=f"The advised model meets a tolerance of {TOLERANCE:.0%} of {observable} in at "
         f"least {MET:.0%} of random scenes.",
@@ -298,13 +286,13 @@ def _met(table: pd.DataFrame, observable: str) -> Claim:
     )
 
 
-def _foretold(table: pd.DataFrame) -> Claim:
+def _from_coarse_pilots(table: pd.DataFrame) -> Claim:
     met = table[table["result"] == "met"]
     share = len(met) / len(table)
     far = (table["cells"] / FEW).max()
-    return Claim(
-        name="foretold from coarse pilots",
-        statement=f"Where pilots end at {FEW} cells, a scheme that is foretold to meet the "
+    return quality_check(
+        name="extrapolated from coarse pilots",
+        statement=f"Where pilots end at {FEW} cells, a scheme that is predicted to meet the "
         f"tolerance on finer ones meets it in at least {MET:.0%} of the cases.",
         verdict=Verdict.AGREE if share >= MET else Verdict.DISAGREE,
         evidence=f"{len(met)} of {len(table)} ({share:.0%}), on grids up to {far:.3g} times finer "
@@ -316,10 +304,10 @@ def _foretold(table: pd.DataFrame) -> Claim:
 def _cheapest(table: pd.DataFrame) -> Claim:
     judged = table[table["result"].isin(["met", "missed"])]
     good = judged[(judged["result"] == "met") & (judged["dearer"] <= DEARER)]
-    honest = not (table["result"] == "not told").any()
+    honest = not (table["result"] == "not said").any()
     worst = judged.loc[judged["dearer"].idxmax()]
     silent = table.loc[table["result"] == "unresolved", "scene"]
-    return Claim(
+    return quality_check(
         name="the cheapest",
         statement="In the built-in scenes and one more the advised model costs at most "
         f"{DEARER:g} times the cheapest that meets the tolerance, and where BCRE does not "
@@ -327,10 +315,10 @@ def _cheapest(table: pd.DataFrame) -> Claim:
         verdict=Verdict.AGREE if honest and len(good) == len(judged) else Verdict.DISAGREE,
         evidence=f"{len(good)} of {len(judged)} scenes; the dearest advice costs "
         f"{worst['dearer']:.2g} times the cheapest ({worst['scene']}: {worst['advised']} on "
-        f"{worst['cells']:.0f} cells, {worst['cheapest']} on {worst['cheapest_cells']:.0f}). These "
-        f"runs are so short that most of their time goes into frames: in steps alone the advice "
-        f"costs up to {judged['dearer_in_steps'].max():.2g} times the least. Told to be "
-        f"unresolved: {', '.join(silent)}",
+        f"{worst['cells']:.0f} cells, {worst['cheapest']} on {worst['cheapest_cells']:.0f}); in "
+        f"steps alone, without the time that frames take, up to "
+        f"{judged['dearer_in_steps'].max():.2g} times. Unresolved, and said to be: "
+        f"{joined(silent)}",
         tolerance=f"{DEARER:g}: {WHY_DEARER}",
     )
 
@@ -339,37 +327,38 @@ def _in_time(times: pd.DataFrame) -> Claim:
     """Hits of the predicted times in the committed record of speed."""
     options = times[times["pilots"] == "all"]
     advised = options[options["advised"]]
-    foretold = times[times["pilots"] == "coarse"]
+    coarse = times[times["pilots"] == "coarse"]
     share = float(advised["hit"].mean())
-    return Claim(
+    return quality_check(
         name="predicted time",
         statement=f"The predicted time of the advised model is within a factor of 2 of the "
         f"measured one in at least {IN_TIME:.0%} of random scenes.",
         verdict=Verdict.AGREE if share >= IN_TIME else Verdict.DISAGREE,
         evidence=f"{int(advised['hit'].sum())} of {len(advised)} scenes ({share:.0%}) in the "
         f"record of speed; of all models with pilots as fine as they are advised "
-        f"{int(options['hit'].sum())} of {len(options)}, of those foretold from coarse pilots "
-        f"{int(foretold['hit'].sum())} of {len(foretold)}",
+        f"{int(options['hit'].sum())} of {len(options)}, of those predicted from coarse pilots "
+        f"{int(coarse['hit'].sum())} of {len(coarse)}",
         tolerance="a factor of 2: runs of a tenth of a millisecond differ by as much from one to "
         "the next",
     )
 
 
 def draw(tables: dict[str, pd.DataFrame]) -> Figure:
-    """True error against the predicted one: as advised, and foretold from coarse pilots."""
+    """True error against the predicted one: as advised, and extrapolated from coarse pilots."""
     figure, axes = style.panels(1, 2)
-    random, foretold = tables["comparison"], tables["extrapolated"]
+    random, extrapolated = tables["comparison"], tables["extrapolated"]
     for axis, table, title in (
         (axes[0], random[random["result"] != "unresolved"], "advised"),
-        (axes[1], foretold, f"foretold from pilots of at most {FEW} cells"),
+        (axes[1], extrapolated, f"predicted from pilots of at most {FEW} cells"),
     ):
         ends = np.array([1e-5, 0.3])
         axis.loglog(ends, ends, color="0.55", linewidth=1.0)
         axis.axhline(TOLERANCE, color="0.55", linestyle=":", linewidth=1.0)
-        for model, look in LOOKS.items():
-            rows = table[table["model"] == model]
+        for name, model in CANDIDATES.items():
+            rows = table[table["model"] == name]
             if len(rows):
-                axis.loglog(rows["predicted_error"], rows["true_error"], label=model, **look)
+                look = model.markers(label=name)
+                axis.loglog(rows["predicted_error"], rows["true_error"], **look)
         axis.set_title(title, loc="left")
         axis.set_xlabel("predicted error")
         axis.set_ylabel("true error")

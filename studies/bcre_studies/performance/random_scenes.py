@@ -12,11 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.rounding import significant
 from bcre_studies.scenes.scene import Scene
 
 SEED = 20_261
 """First half of the seed; the second is the index of the scene."""
+
+PULSE, WAVES = "pulse", "waves"
 
 DIGITS = 4
 """Numbers of a scene are drawn to so many digits, so that they can be read and typed."""
@@ -26,6 +28,11 @@ def random_scene(index: int) -> Scene:
     """Scene number ``index``: a pulse on a slope, or waves under a layer with joined ends."""
     chance = np.random.default_rng([SEED, index])
     return _waves(index, chance) if chance.random() < 0.2 else _pulse(index, chance)
+
+
+def kind_of(scene: Scene) -> str:
+    """What kind of random scene it is: waves have joined ends, pulses have not."""
+    return WAVES if scene.domain.ends == "periodic" else PULSE
 
 
 def _pulse(index: int, chance: np.random.Generator) -> Scene:
@@ -42,7 +49,7 @@ def _pulse(index: int, chance: np.random.Generator) -> Scene:
         "centre": significant(length * float(chance.uniform(0.15, 0.75)), DIGITS),
         "width": significant(length * _between(chance, 0.03, 0.1), DIGITS),
     }
-    return _scene(f"Random scene {index}: pulse", material, length, "open", until, surface, pulse)
+    return _scene(f"Random scene {index}: {PULSE}", material, length, "open", until, surface, pulse)
 
 
 def _waves(index: int, chance: np.random.Generator) -> Scene:
@@ -51,7 +58,7 @@ def _waves(index: int, chance: np.random.Generator) -> Scene:
     surface = [{"kind": "incline", "slope": material["Sc"]}, _noise(chance, length)]
     layer = {"kind": "uniform", "amplitude": _between(chance, 0.1, 3.0)}
     return _scene(
-        f"Random scene {index}: waves", material, length, "periodic", until, surface, layer
+        f"Random scene {index}: {WAVES}", material, length, "periodic", until, surface, layer
     )
 
 

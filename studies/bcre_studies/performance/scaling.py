@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.performance.record.record import read
+from bcre_studies.comparison.claim import Claim, quality_check
+from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.performance.record.record import recorded
 from bcre_studies.reporting import style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-READS_RECORD = True
 PAPERS_CELLS = 100
 """Cells of d = 1, as in the paper, of a slope as long as our scenes of its figures."""
 
@@ -34,11 +34,8 @@ WHY_RATIO = (
 
 def run() -> dict[str, pd.DataFrame]:
     """The recorded ratios, rates by size, budget and first use."""
-    record = read()
-    return {
-        "comparison": record["ratios"],
-        **{name: record[name] for name in ("sizes", "budget", "first_use", "machine")},
-    }
+    comparison = recorded("ratios")["ratios"]
+    return {"comparison": comparison, **recorded("sizes", "budget", "first_use", "machine")}
 
 
 def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
@@ -49,10 +46,10 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     papers = budget[budget["model"] == "automaton, upwind"]
     least = papers.loc[papers["cells"].idxmin()]
     pde = budget[budget["model"].str.startswith("PDE")]
-    told = ", ".join(f"{row.scene} {row.cells:.2g} cells" for row in papers.itertuples())
+    of_automaton = ", ".join(f"{row.scene} {row.cells:.2g} cells" for row in papers.itertuples())
     of_pde = ", ".join(f"{row.scene} {row.cells:.2g}" for row in pde.itertuples())
     return [
-        Claim(
+        quality_check(
             name="ratios",
             statement="The compiled automaton is as fast as its goals say.",
             verdict=Verdict.DISAGREE if len(missed) else Verdict.AGREE,
@@ -66,7 +63,7 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
             name="interactive",
             statement="The paper's automaton plays the paper's figures at 60 frames a second.",
             verdict=Verdict.AGREE if least["cells"] >= PAPERS_CELLS else Verdict.DISAGREE,
-            evidence=f"with up to {told}; BCRE's solver with up to {of_pde} cells",
+            evidence=f"with up to {of_automaton}; BCRE's solver with up to {of_pde} cells",
             tolerance=f"at least the {PAPERS_CELLS} cells of the scene in a sixtieth of a second, "
             "one core, drawing not counted",
         ),

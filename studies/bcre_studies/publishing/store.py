@@ -1,32 +1,28 @@
 """Results that need not be computed twice.
 
 The tables of a study are kept under a key of everything that they depend on: the study, all that
-it imports, the scenes, and the versions of the libraries (:mod:`bcre_studies.system.sources`). A
-file that is damaged or half-written fails its digest and is measured again. While a study is being
-measured a folder of that name keeps its finished cases, and a second run waits for the first.
+it imports, the files that it reads, and the versions of the libraries
+(:mod:`bcre_studies.system.sources`). A file that is damaged or half-written fails its digest and is
+measured again. While a study is being measured a folder of that name keeps its finished cases, and
+a second run waits for the first. Where nothing can be written there, nothing is kept.
 """
 
 from __future__ import annotations
 
 import os
 import re
+import shutil
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
 import pandas as pd
 
 from bcre_studies.catalog import STUDIES, study
-from bcre_studies.comparison.compare import significant
-from bcre_studies.sweeps import each as work
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.sweeps import parallel
 from bcre_studies.system import pickles, sources
-from bcre_studies.system.files import (
-    CACHE,
-    REPORTS,
-    remove_abandoned,
-    require_writable,
-    sweep,
-    workshop,
-)
+from bcre_studies.system.files import CACHE, alone, can_be_written, sweep
 
 Tables = dict[str, pd.DataFrame]
 
@@ -39,18 +35,22 @@ KEPT = 3
 
 def tables_of(name: str) -> Tables:
     """The tables of a study: from the store where it has them, else measured now and stored."""
-    entry = f"{name}-{_key(name)}"
-    path, cases = CACHE / f"{entry}.pickle", CACHE / entry
+    entry = f"{name}-{sources.digest(f'bcre_studies.{STUDIES[name].module}')[:16]}"
+    path = CACHE / f"{entry}.pickle"
     tables = _load(path)
     if tables is None:
-        require_writable(".cache", CACHE)
-        with workshop(cases, f"bcre: waiting for another run that measures {name}"):
-            tables = _load(path)
-            if tables is None:
-                with work.kept(cases):
-                    measured = study(name).run()
-                tables = {key: _rounded(table) for key, table in measured.items()}
-                pickles.dump(path, tables)
+        tables = _kept(name, path) if can_be_written(CACHE) else study(name).run()
+    return {key: _rounded(table) for key, table in tables.items()}
+
+
+def _kept(name: str, path: Path) -> Tables:
+    """Measure, and keep finished cases and the tables in ``path``, which another run may fill."""
+    with alone(CACHE / f"{name}.lock", f"bcre: waiting for another run that measures {name}"):
+        tables = _load(path)
+        if tables is None:
+            with parallel.kept(path.with_suffix("")):
+                tables = study(name).run()
+            pickles.dump(path, tables)
         _forget_old(name)
     return tables
 
@@ -66,31 +66,22 @@ def _load(path: Path) -> Tables | None:
 
 
 def _forget_old(name: str) -> None:
-    """Remove all but the latest tables of a study, and what measurements given up have left."""
+    """Remove all but the latest tables of a study, and the cases of all its measurements.
+
+    Its lock must be held, so that nobody is measuring it.
+    """
     sweep(CACHE, "*")
     entry = re.compile(rf"{re.escape(name)}-[0-9a-f]{{16}}(\.pickle)?")
     entries = [path for path in CACHE.iterdir() if entry.fullmatch(path.name)]
-    with suppress(FileNotFoundError):  # another run may be doing the same
-        tables = [path for path in entries if path.suffix == ".pickle"]
-        for path in sorted(tables, key=lambda path: path.stat().st_mtime)[:-KEPT]:
-            path.unlink()
-        for path in entries:
-            if path.is_dir():
-                remove_abandoned(path)
-
-
-def _key(name: str) -> str:
-    """Changes with whatever the study imports, and with the record of speed where it reads it."""
-    records: list[Path] = []
-    if getattr(study(name), "READS_RECORD", False):
-        records = sorted((REPORTS / "speed").glob("*.csv"))
-    return sources.digest(f"bcre_studies.{STUDIES[name].module}", *records)[:16]
+    for path in entries:
+        if path.is_dir():
+            shutil.rmtree(path, ignore_errors=True)
+    tables = [path for path in entries if path.suffix == ".pickle"]
+    for path in sorted(tables, key=lambda path: path.stat().st_mtime)[:-KEPT]:
+        path.unlink()
 
 
 def _rounded(table: pd.DataFrame) -> pd.DataFrame:
     floats = table.select_dtypes("float").columns
-    return table.assign(**{name: table[name].map(_five_digits) for name in floats})
-
-
-def _five_digits(value: float) -> float:
-    return significant(value, DIGITS)
+    short = partial(significant, digits=DIGITS)
+    return table.assign(**{name: table[name].map(short) for name in floats})

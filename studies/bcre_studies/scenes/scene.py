@@ -7,16 +7,26 @@ refused with a line that names the key, the value and what is allowed.
 
 from __future__ import annotations
 
-import tomllib
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import Field, PrivateAttr, ValidationError, model_validator
+from pydantic import Field, ValidationError, model_validator
 
-from bcre_studies.scenes.domain import Array, Domain, NonNegative, Positive, StrictTable
-from bcre_studies.scenes.listing import BUILT_IN, built_in_names
+from bcre_studies.scenes.domain import (
+    Array,
+    Domain,
+    NonNegative,
+    Positive,
+    SceneFile,
+    StrictTable,
+    Units,
+)
+from bcre_studies.scenes.refusal import SceneError as SceneError
+from bcre_studies.scenes.refusal import first_of, kinds_of, refuse_long_integers
+from bcre_studies.scenes.source import Source
 from bcre_studies.scenes.tables import ProfileError
 from bcre_studies.scenes.terms import (
     RollingTerm,
@@ -25,28 +35,15 @@ from bcre_studies.scenes.terms import (
     TableRolling,
     TableSurface,
 )
+from bcre_studies.scenes.toml_file import assign, is_on_plane, read
 from bcre_studies.system.memory import NotEnoughMemoryError
-from bcre_studies.system.one_line import one_line
-
-LONGEST = 100_000
-"""Bytes of a scene file; it is a page of text, long profiles belong into tables."""
-
-WIDEST = 1_000
-"""Characters of one of its lines; keys of very many parts would take hours to be read."""
-
-
-class SceneError(ValueError):
-    """A scene that cannot be run; its text is one line naming key, value and what is allowed."""
-
-    def __init__(self, message: str) -> None:
-        super().__init__(one_line(message))
 
 
 class SceneMaterial(StrictTable):
     """``[material]``: the coefficients of both models.
 
     kappa is BCRE's curvature term, which the paper's rule does not have and the calibrated and the
-    limited one take over; ``v_up`` makes the exchange that of thick flows.
+    limited one take over; ``v_up`` makes the exchange, and ``Gamma`` the flux, that of thick flows.
     """
 
     v: NonNegative
@@ -55,6 +52,7 @@ class SceneMaterial(StrictTable):
     Sc: NonNegative
     kappa: NonNegative = 0.0
     v_up: Positive | None = None
+    Gamma: NonNegative = 0.0
 
 
 class Automaton(StrictTable):
@@ -79,7 +77,7 @@ class Solver(StrictTable):
     tolerance: Annotated[float, Field(gt=0, lt=1)] = 1e-6
 
 
-class Scene(StrictTable):
+class Scene(SceneFile):
     """A whole scene file."""
 
     title: str
@@ -88,23 +86,21 @@ class Scene(StrictTable):
     time: Time
     surface: tuple[SurfaceTerm, ...] = ()
     rolling: tuple[RollingTerm, ...] = ()
+    source: tuple[Source, ...] = ()
     automaton: Automaton = Automaton()
     solver: Solver = Solver()
-    _folder: Path = PrivateAttr(default_factory=Path)
+    units: Units | None = None
 
-    @model_validator(mode="before")
-    @classmethod
-    def _lists_to_tuples(cls, data: Any) -> Any:
-        if isinstance(data, dict):
-            return {
-                key: tuple(value) if isinstance(value, list) else value
-                for key, value in data.items()
-            }
-        return data
+    @model_validator(mode="after")
+    def _sources_lie_on_the_line(self) -> Self:
+        for index, source in enumerate(self.source):
+            if why := source.beyond(self.domain):
+                raise ValueError(f"source.{index}.{why}")
+        return self
 
     @model_validator(mode="after")
     def _fits_periodic_ends(self) -> Self:
-        if self.domain.ends == "open":
+        if self.domain.ends != "periodic":
             return self
         for index, term in enumerate(self.surface):
             if not isinstance(term, Sine):
@@ -137,6 +133,24 @@ class Scene(StrictTable):
         """Cell centres of the automaton, or of another grid on the same domain."""
         return self.domain.centres(cells)
 
+    def require_held(self, cells: int, key: str = "domain.cells") -> None:
+        """Refuse a grid that cannot hold the initial profile; see :mod:`bcre_studies.scenes.held`.
+
+        Raises
+        ------
+        SceneError
+            naming the term, and ``key`` as what asks for so many cells.
+        """
+        for layer, terms in (("surface", self.surface), ("rolling", self.rolling)):
+            for index, term in enumerate(terms):
+                if why := term.beyond(self.domain, cells):
+                    raise SceneError(f"{layer}.{index}.{why} ({key} = {cells})")
+
+    def holds(self, cells: int) -> bool:
+        """Whether so many cells can hold the initial profile."""
+        parts = (*self.surface, *self.rolling)
+        return not any(term.beyond(self.domain, cells) for term in parts)
+
     def initial(self, x: Array) -> tuple[Array, Array]:
         """h and R at positions x at t = 0, the same functions for every grid and model."""
         h, R = np.zeros_like(x), np.zeros_like(x)
@@ -145,6 +159,15 @@ class Scene(StrictTable):
         for rolling in self.rolling:
             R += rolling.layer(x, self.domain)
         return h, R
+
+    def poured(self, t: float) -> float:
+        """Area that the sources have poured by the time t."""
+        return math.fsum(source.poured(t) for source in self.source)
+
+    def tables(self) -> list[Path]:
+        """The CSV files that its profiles come from."""
+        terms = (*self.surface, *self.rolling)
+        return [self._folder / term.file for term in terms if term.kind == "table"]
 
     def with_changes(self, **changes: Any) -> Scene:
         """A copy with values replaced: ``with_changes(v=0.2, **{"rolling.0.width": 1.0})``."""
@@ -158,20 +181,20 @@ def load(source: str | Path, overrides: Sequence[str] = ()) -> Scene:
     ------
     SceneError
         where the scene is not to be found or not allowed.
+
+    >>> scene = load("figure2", overrides=["D=0.2"])
+    >>> scene.material.v, scene.material.D, scene.d
+    (2.5, 0.2, 1.0)
+    >>> load("figure2", overrides=["D=-1"])
+    Traceback (most recent call last):
+    bcre_studies.scenes.refusal.SceneError: material.D = -1: must be greater than or equal to 0
     """
-    path = Path(source)
-    if str(source) in built_in_names():
-        path = BUILT_IN / f"{source}.toml"
-    text, folder = _read(path), path.parent
-    try:
-        data = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
-        raise SceneError(f"{source}: not a TOML file: {error}") from None
-    for assignment in overrides:
-        key, separator, value = assignment.partition("=")
-        if not separator:
-            raise SceneError(f"--set {assignment!r}: must be key=value")
-        _assign(data, key.strip(), _toml_value(value.strip()))
+    data, folder = read(source, overrides, SECTIONS)
+    if is_on_plane(data):
+        raise SceneError(
+            f"{source}: is a scene on a plane, which bcre run takes; this command takes scenes on "
+            "a line, without domain.width and grids"
+        )
     return _validated(data, folder)
 
 
@@ -179,7 +202,7 @@ def override(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     """A copy of the scene with the values at the given keys replaced."""
     data = scene.model_dump(exclude_unset=True, mode="json")
     for key, value in changes.items():
-        _assign(data, key, value)
+        assign(data, key, value, SECTIONS)
     return _validated(data, scene._folder)
 
 
@@ -190,74 +213,22 @@ SECTIONS: dict[str, type[StrictTable]] = {
     "automaton": Automaton,
     "solver": Solver,
 }
-
-
-def _assign(data: dict[str, Any], key: str, value: Any) -> None:
-    """Set ``material.v``, ``rolling.0.width`` or a bare ``v``; the first section with it wins."""
-    parts = key.split(".")
-    if len(parts) == 1 and key != "title":
-        section = next(
-            (name for name, model in SECTIONS.items() if key in model.model_fields), None
-        )
-        if section is None:
-            allowed = dict.fromkeys(
-                field for model in SECTIONS.values() for field in model.model_fields
-            )
-            raise SceneError(
-                f"{key} = {value!r}: no such key; allowed are {', '.join(allowed)}, "
-                "or a path such as rolling.0.width"
-            )
-        parts = [section, key]
-    place: Any = data
-    for part in parts[:-1]:
-        if isinstance(place, list):
-            if not (part.isascii() and part.isdigit()) or int(part) >= len(place):
-                raise SceneError(f"{key} = {value!r}: {part} must be one of 0..{len(place) - 1}")
-            place = place[int(part)]
-        elif isinstance(place, dict):
-            place = place.setdefault(part, {})
-        else:
-            raise SceneError(f"{key} = {value!r}: no such key")
-    if not isinstance(place, dict):
-        raise SceneError(f"{key} = {value!r}: no such key")
-    place[parts[-1]] = value
-
-
-def _toml_value(text: str) -> Any:
-    try:
-        parsed = tomllib.loads(f"value = {text}")
-    except (ValueError, RecursionError):
-        return text
-    return parsed["value"] if len(parsed) == 1 else text
-
-
-def _read(path: Path) -> str:
-    names = ", ".join(built_in_names())
-    try:
-        if not path.is_file():
-            raise SceneError(f"{path}: no such scene; must be a TOML file or one of {names}")
-        if path.stat().st_size > LONGEST:
-            raise SceneError(f"{path}: must be a TOML file of at most {LONGEST} bytes")
-        text = path.read_text(encoding="utf-8")
-    except UnicodeDecodeError:
-        raise SceneError(f"{path}: must be UTF-8 text") from None
-    except OSError as error:
-        raise SceneError(f"{path}: cannot be read: {error.strerror}") from None
-    if max(map(len, text.splitlines()), default=0) > WIDEST:
-        raise SceneError(f"{path}: must be a TOML file with at most {WIDEST} characters a line")
-    return text
+KINDS = {"surface": kinds_of(SurfaceTerm), "rolling": kinds_of(RollingTerm)}
 
 
 def _validated(data: dict[str, Any], folder: Path) -> Scene:
-    _refuse_long_integers(data)
+    refuse_long_integers(data)
     try:
         scene = Scene.model_validate(data)
     except ValidationError as failure:
-        raise SceneError(_first_of(failure)) from None
+        raise SceneError(first_of(failure, KINDS)) from None
     scene._folder = folder
     try:
         with np.errstate(over="raise", divide="raise", invalid="raise"):
             _load_tables(scene)
+            scene.require_held(scene.domain.cells)
+            if scene.solver.cells is not None:
+                scene.require_held(scene.solver.cells, "solver.cells")
     except (ProfileError, NotEnoughMemoryError) as failure:
         raise SceneError(str(failure)) from None
     except FloatingPointError as failure:
@@ -275,55 +246,3 @@ def _load_tables(scene: Scene) -> None:
     for index, rolling in enumerate(scene.rolling):
         if isinstance(rolling, TableRolling):
             rolling.load(f"rolling.{index}", scene._folder, scene.domain)
-
-
-def _refuse_long_integers(data: dict[str, Any]) -> None:
-    """Integers are of 64 bits in TOML; longer ones cannot even be shown."""
-    todo: list[tuple[str, Any]] = [("", data)]
-    while todo:
-        key, value = todo.pop()
-        if isinstance(value, dict):
-            todo += [(f"{key}.{name}", part) for name, part in value.items()]
-        elif isinstance(value, list):
-            todo += [(f"{key}.{index}", part) for index, part in enumerate(value)]
-        elif isinstance(value, int) and value.bit_length() > 63:
-            raise SceneError(
-                f"{key[1:]} = an integer of {value.bit_length()} bits: must be one of at most 63"
-            )
-
-
-def _first_of(failure: ValidationError) -> str:
-    errors = failure.errors()
-    # Of a choice (a number or "auto") every alternative reports; the first one speaks for all.
-    error = errors[0]
-    message = " ".join(error["msg"].removeprefix("Value error, ").split())
-    if error["type"] == "value_error":
-        return message
-    variants = {"incline", "sine", "noise", "table", "gaussian", "uniform"}
-    key = ".".join(str(part) for part in error["loc"] if part not in variants)
-    if error["loc"][-1:] == ("constrained-float",) or "literal" in str(error["loc"][-1]):
-        key = ".".join(str(part) for part in error["loc"][:-1])
-        message += " (or be 'auto')" if key.endswith("step") else ""
-    if error["type"] == "missing":
-        return f"{key}: missing; this key is required"
-    if error["type"].startswith("union_tag"):
-        kind = error["input"].get("kind") if isinstance(error["input"], dict) else error["input"]
-        surfaces = key.startswith("surface")
-        expected = (
-            "'incline', 'sine', 'noise', 'table'" if surfaces else "'gaussian', 'uniform', 'table'"
-        )
-        return f"{key}.kind = {_short(kind)}: must be one of {expected}"
-    if error["type"] == "extra_forbidden":
-        return f"{key} = {_short(error['input'])}: no such key is allowed here"
-    if error["type"] == "tuple_type":
-        return f"{key} = {_short(error['input'])}: must be a list of tables, [[{key}]]"
-    allowed = message.replace("Input should be", "must be")
-    return f"{key} = {_short(error['input'])}: {allowed}"
-
-
-def _short(value: object) -> str:
-    try:
-        text = repr(value)
-    except (RecursionError, ValueError):
-        return f"({type(value).__name__} too long or too deep to be shown)"
-    return text if len(text) <= 80 else f"{text[:77]}..."

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-import fcntl
+import errno
 import glob
 import os
+import secrets
 import shutil
 import sys
-import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
+
+from filelock import FileLock, Timeout
 
 _HERE = Path(__file__).resolve().parents[3]
 
@@ -21,11 +23,16 @@ REPORTS = ROOT / "reports"
 CACHE = ROOT / ".cache"
 
 
+LOCKLESS = {errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOLCK, errno.EINVAL}
+"""What a file system without locks answers when it is asked for one."""
+
+
 def replace_file(path: Path, write: Callable[[Path], None]) -> None:
     """Let ``write`` fill a temporary file beside ``path``, then move it there in one step.
 
     The content is on the disk before it bears its name, so that a power cut leaves the old file or
-    the new one. What a killed writer left of the same file is removed.
+    the new one. What a killed writer left of the same file is removed. A link is written through. A
+    file that is there keeps its permissions, a new one has those of the umask.
 
     Raises
     ------
@@ -33,91 +40,85 @@ def replace_file(path: Path, write: Callable[[Path], None]) -> None:
         naming the file and the reason where it cannot be written; what was there stays.
     """
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        sweep(path.parent, glob.escape(path.name))
-        with _temporary(path) as (handle, temporary):
-            write(temporary)
-            temporary.chmod(0o644)
-            os.fsync(handle)
-            temporary.replace(path)
-    except OSError as error:
-        raise OSError(f"{path}: cannot be written: {error.strerror or error}") from error
-
-
-@contextmanager
-def _temporary(path: Path) -> Iterator[tuple[int, Path]]:
-    """An open file beside ``path``, locked for as long as its writer lives, and its name."""
-    while True:
-        handle, name = tempfile.mkstemp(".part", f".{path.name}.", path.parent)
-        fcntl.flock(handle, fcntl.LOCK_EX)
-        if os.fstat(handle).st_nlink:
-            break
-        os.close(handle)  # swept away by another run before it was locked
-    try:
-        yield handle, Path(name)
-    finally:
-        Path(name).unlink(missing_ok=True)
-        os.close(handle)
+        target = path.resolve()
+        target.parent.mkdir(parents=True, exist_ok=True)
+        sweep(target.parent, glob.escape(target.name))
+        temporary = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
+        with locked(temporary):  # creates it; held for as long as its writer lives
+            try:
+                write(temporary)
+                with temporary.open("rb+") as file:
+                    os.fsync(file.fileno())
+                if target.exists():
+                    shutil.copymode(target, temporary)
+                temporary.replace(target)
+            finally:
+                temporary.unlink(missing_ok=True)
+    except (OSError, RuntimeError) as error:  # the latter for links that go round in a circle
+        reason = getattr(error, "strerror", None) or error
+        raise OSError(f"{path}: cannot be written: {reason}") from error
 
 
 def sweep(folder: Path, pattern: str) -> None:
     """Remove temporary files, of names like ``pattern``, whose writers are dead.
 
-    A living writer holds the lock of its file; that of a dead one is free.
+    Where the file system has no locks nobody knows who is dead, so that they stay.
     """
     for leftover in folder.glob(f".{pattern}.*.part"):
-        with suppress(OSError), leftover.open("rb") as file:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            leftover.unlink()
+        # A living writer has it locked.
+        with suppress(OSError), locked(leftover, blocking=False) as held:
+            if held:
+                leftover.unlink()
 
 
 @contextmanager
-def workshop(folder: Path, waiting: str) -> Iterator[None]:
-    """Hold ``folder`` alone, and remove it at the end.
+def locked(path: Path, blocking: bool = True) -> Iterator[bool]:
+    """Hold the file ``path``, which is made if need be; do without where no file can be locked.
+
+    Yields whether it is held.
+
+    Raises
+    ------
+    filelock.Timeout
+        where another holds it and ``blocking`` is false.
+    """
+    lock = FileLock(path, fallback_to_soft=False)
+    try:
+        lock.acquire(blocking=blocking)
+    except OSError as error:
+        if error.errno not in LOCKLESS:
+            raise
+        yield False
+        return
+    try:
+        yield True
+    finally:
+        lock.release()
+
+
+@contextmanager
+def alone(lock: Path, waiting: str) -> Iterator[None]:
+    """Hold the file ``lock``, which stays.
 
     A second run waits, after saying ``waiting``, until the first has ended, however it ends.
-    After an exception or a kill what is in the folder stays, for the next run to take over.
     """
-    handle = _lock(folder, waiting)
-    try:
+    lock.parent.mkdir(parents=True, exist_ok=True)
+    with ExitStack() as held:
+        try:
+            held.enter_context(locked(lock, blocking=False))
+        except Timeout:
+            print(waiting, file=sys.stderr, flush=True)
+            held.enter_context(locked(lock))
         yield
-        shutil.rmtree(folder, ignore_errors=True)
-    finally:
-        with suppress(OSError):
-            folder.rmdir()  # where nothing was finished
-        os.close(handle)
 
 
-def _lock(folder: Path, waiting: str) -> int:
-    while True:
-        folder.mkdir(parents=True, exist_ok=True)
-        with suppress(FileNotFoundError):  # its last holder was done and removed it
-            handle = os.open(folder, os.O_RDONLY)
-            try:
-                _lock_patiently(handle, waiting)
-                if os.path.samestat(folder.stat(), os.fstat(handle)):
-                    return handle
-            except BaseException:
-                os.close(handle)
-                raise
-            os.close(handle)
-
-
-def _lock_patiently(handle: int, waiting: str) -> None:
+def can_be_written(folder: Path) -> bool:
+    """Whether files could be written there."""
     try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        print(waiting, file=sys.stderr, flush=True)
-        fcntl.flock(handle, fcntl.LOCK_EX)
-
-
-def remove_abandoned(folder: Path) -> None:
-    """Remove a folder of :func:`workshop` that nobody holds."""
-    handle = os.open(folder, os.O_RDONLY)
-    with suppress(BlockingIOError):
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        shutil.rmtree(folder, ignore_errors=True)
-    os.close(handle)
+        require_writable("", folder)
+    except ValueError:
+        return False
+    return True
 
 
 def require_writable(key: str, folder: Path, names: Sequence[str] = ()) -> None:

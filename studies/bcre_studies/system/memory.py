@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
+
+import psutil
+
+GROUP = {
+    "": ("memory.max", "memory.current"),
+    "memory": ("memory.limit_in_bytes", "memory.usage_in_bytes"),
+}
+"""Files with limit and use of a control group of version 2, and of a memory group of version 1."""
 
 
 class NotEnoughMemoryError(ValueError):
-    """A line that tells what would take how much, and what there is."""
+    """One line: what needs how much memory, and how much there is."""
 
 
 def require(what: str, needed: int) -> None:
-    """Raise :class:`NotEnoughMemoryError` where more is needed than the machine has to give.
+    """Raise :class:`NotEnoughMemoryError` where more is needed than there is.
 
     Parameters
     ----------
@@ -27,51 +35,36 @@ def require(what: str, needed: int) -> None:
 
 
 def available() -> int:
-    """Bytes that this process may still take: of the machine, and within its control groups."""
-    return max(min([_of_machine(), *_of_groups()]), 0)
+    """Bytes that this process may still take: the least that any of its limits leaves."""
+    machine = int(psutil.virtual_memory().available)
+    return max(min([machine, *_of_process(), *_of_groups()]), 0)
 
 
-def _of_machine() -> int:
-    try:
-        lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
-        (free,) = (line.split()[1] for line in lines if line.startswith("MemAvailable:"))
-    except (OSError, ValueError):  # no Linux: all that is built in
-        return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    return int(free) * 1024
+def _of_process() -> Iterator[int]:
+    """What ``ulimit -v`` leaves of the address space, and ``ulimit -d`` of the data."""
+    if not hasattr(psutil, "RLIMIT_AS"):  # not Linux
+        return
+    process = psutil.Process()
+    held = process.memory_info()
+    for resource, used in ((psutil.RLIMIT_AS, held.vms), (psutil.RLIMIT_DATA, held.data)):
+        limit, _ = process.rlimit(resource)
+        if limit != psutil.RLIM_INFINITY:
+            yield int(limit) - int(used)
 
 
 def _of_groups(
     root: Path = Path("/sys/fs/cgroup"), own: Path = Path("/proc/self/cgroup")
 ) -> Iterator[int]:
-    """What every control group above this process has left, of version 1 and 2 alike."""
-    try:
-        lines = own.read_text(encoding="utf-8").splitlines()
-    except OSError:
-        return
-    for line in lines:
+    """What the control groups above this process leave; psutil does not know of them."""
+    for line in own.read_text(encoding="utf-8").splitlines() if own.exists() else ():
         _, controllers, path = line.split(":", 2)
-        if controllers in ("", "memory"):
-            top = root / controllers
-            group = top / path.lstrip("/")
-            for folder in (group, *group.parents):
-                yield from _left_in(folder)
-                if folder == top:
-                    break
-
-
-def _left_in(folder: Path) -> Iterator[int]:
-    for most, now in (
-        ("memory.max", "memory.current"),
-        ("memory.limit_in_bytes", "memory.usage_in_bytes"),
-    ):
-        try:
-            limit, used = ((folder / name).read_text(encoding="ascii") for name in (most, now))
-            # File pages that nobody uses count as used but are given back.
-            cached = dict(map(str.split, (folder / "memory.stat").read_text().splitlines()))
-            idle = cached.get("total_inactive_file") or cached.get("inactive_file", "0")
-            yield int(limit) - int(used) + int(idle)
-        except (OSError, ValueError):  # no such group or version, or "max"
-            continue
+        group = root / controllers / path.lstrip("/")
+        for folder in (group, *group.parents):
+            with suppress(OSError, ValueError, KeyError):  # of another kind, or without a limit
+                limit, used = (int((folder / name).read_text()) for name in GROUP[controllers])
+                # Pages of files that nobody uses count as used, but are given back.
+                stat = dict(map(str.split, (folder / "memory.stat").read_text().splitlines()))
+                yield limit - used + int(stat.get("total_inactive_file") or stat["inactive_file"])
 
 
 def _size(count: int) -> str:

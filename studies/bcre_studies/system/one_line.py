@@ -1,4 +1,4 @@
-"""What is told about bad input fits on one line and cannot steer the terminal that shows it."""
+"""Messages about bad input: one line each, without control characters."""
 
 from __future__ import annotations
 

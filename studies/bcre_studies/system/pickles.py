@@ -1,4 +1,4 @@
-"""Intermediate results as files that tell whether they are whole."""
+"""Intermediate results as files that carry a checksum of their content."""
 
 from __future__ import annotations
 

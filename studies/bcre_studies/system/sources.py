@@ -1,7 +1,8 @@
-"""The sources that a module's results depend on, and their digest.
+"""What a module's results depend on, as one digest.
 
-A result may be kept for as long as nothing that made it has changed: the closure of what the
-module imports from this project, the data files beside those modules, and the libraries.
+A result may be kept for as long as nothing that made it has changed: the module, what it imports
+from this project, the data files beside those modules, the reports that they read at run time, and
+the versions of the libraries. Nothing is imported to find this out.
 """
 
 from __future__ import annotations
@@ -9,53 +10,96 @@ from __future__ import annotations
 import ast
 import hashlib
 import platform
+from collections.abc import Iterator
 from functools import cache
 from importlib.metadata import version
 from importlib.util import find_spec
+from itertools import accumulate
 from pathlib import Path
+from typing import NamedTuple
 
-PROJECT = ("bcre_ca", "bcre_pde", "bcre_studies")
+from bcre_studies.system.records import recorded, required
+
 LIBRARIES = ("numpy", "scipy", "numba", "py-pde", "pandas")
-DATA = (".toml", ".csv", ".j2")
+DATA = (".toml", ".csv", ".asc", ".j2")
+PACKAGES = {
+    name: Path(str(getattr(find_spec(name), "origin", ""))).parent
+    for name in ("bcre_ca", "bcre_pde", "bcre_studies")
+}
+"""The project's packages and their folders."""
 
 
-def digest(module: str, *more: Path) -> str:
-    """SHA-256, in hexadecimal, of everything that what ``module`` computes depends on.
-
-    Parameters
-    ----------
-    module: dotted name of an importable module of the project.
-    more: further files that it reads.
-    """
+def digest(module: str) -> str:
+    """SHA-256, in hexadecimal, of everything that the results of ``module`` depend on."""
     total = hashlib.sha256(platform.python_version().encode())
     for library in LIBRARIES:
-        total.update(f"{library} {version(library)}".encode())
+        total.update(f"{library} {_version(library)}".encode())
     for name, path in closure(module).items():
-        total.update(name.encode() + path.read_bytes())
-    for path in more:
-        total.update(path.name.encode() + path.read_bytes())
+        total.update(f"{name} ".encode() + hashlib.sha256(path.read_bytes()).digest())
     return total.hexdigest()
 
 
-def closure(module: str) -> dict[str, Path]:
-    """Names and files of what ``module`` imports of the project, directly or through others.
+_version = cache(version)
 
-    It includes the module itself, the packages above it, imports inside functions, and the data
-    files in the folders of these packages; imports for type checking alone do not count.
+
+def require_records(module: str) -> None:
+    """Refuse what depends on a record that is missing.
+
+    Raises
+    ------
+    FileNotFoundError
+        naming the record.
     """
+    _, patterns = _modules(module)
+    for pattern in sorted(patterns):
+        required(pattern)
+
+
+def closure(module: str) -> dict[str, Path]:
+    """Names and files of ``module`` and of all that it depends on in this project.
+
+    These are the modules that it imports, directly or through others, at the top of a file or in a
+    function, but not for type checking alone; the packages above them; the data files in the
+    folders of those packages; and the reports that one of these modules reads at run time, which
+    its constant ``READS`` names as a pattern below ``reports/``.
+    """
+    found, patterns = _modules(module)
+    folders = {path.parent for path in found.values()}
+    data = [path for folder in folders for path in _data_in(folder)]
+    data += [path for pattern in patterns for path in recorded(pattern)]
+    found |= {f"{path.parent.name}/{path.name}": path for path in data}
+    return dict(sorted(found.items()))
+
+
+def _modules(module: str) -> tuple[dict[str, Path], set[str]]:
+    """Modules and packages of the closure by name, and the patterns of the records they read."""
     found: dict[str, Path] = {}
-    todo = [module]
+    reports: set[str] = set()
+    todo = [*_with_parents(module)]
     while todo:
         name = todo.pop()
         path = None if name in found else _file_of(name)
-        if path is None:
-            continue
-        found[name] = path
-        todo += _imported_by(path)
-        todo.append(name.rpartition(".")[0])
-    for folder in {path.parent for path in found.values()}:
-        found |= {f"{folder.name}/{path.name}": path for path in _data_in(folder)}
-    return dict(sorted(found.items()))
+        if path is not None:
+            found[name] = path
+            needed = _needs(path.read_bytes())
+            reports |= needed.reports
+            # Importing a.b.c imports a and a.b as well.
+            todo += [part for other in needed.imports for part in _with_parents(other)]
+    return found, reports
+
+
+def _with_parents(name: str) -> Iterator[str]:
+    return accumulate(name.split("."), "{}.{}".format)
+
+
+def _file_of(name: str) -> Path | None:
+    """The file of a module of the project; None for all else, a function in one for example."""
+    package, *inner = name.split(".")
+    if package not in PACKAGES:
+        return None
+    place = PACKAGES[package].joinpath(*inner)
+    files = (place / "__init__.py", place.with_name(f"{place.name}.py"))
+    return next((path for path in files if path.is_file()), None)
 
 
 def _data_in(folder: Path) -> list[Path]:
@@ -64,31 +108,27 @@ def _data_in(folder: Path) -> list[Path]:
     return [path for place in (folder, *below) for path in place.iterdir() if path.suffix in DATA]
 
 
-@cache
-def _file_of(name: str) -> Path | None:
-    """The file of a module of the project; None for all else, a function in one for example."""
-    if name.partition(".")[0] not in PROJECT:
-        return None
-    try:
-        spec = find_spec(name)
-    except ModuleNotFoundError:  # what stands before the last dot is no package
-        return None
-    return Path(spec.origin) if spec and spec.origin else None
+class _Needs(NamedTuple):
+    imports: list[str]
+    reports: set[str]
 
 
 @cache
-def _imported_by(path: Path) -> list[str]:
-    """Dotted names that a file imports; of ``from a import b`` both a and a.b."""
-    names: list[str] = []
-    todo: list[ast.AST] = [ast.parse(path.read_bytes())]
+def _needs(source: bytes) -> _Needs:
+    """Dotted names that a source imports, of ``from a import b`` both a and a.b; its ``READS``."""
+    imports: list[str] = []
+    reports: set[str] = set()
+    todo: list[ast.AST] = [ast.parse(source)]
     while todo:
         node = todo.pop()
         if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
             todo += node.orelse
         elif isinstance(node, ast.Import):
-            names += [alias.name for alias in node.names]
+            imports += [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom) and node.module:
-            names += [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
+            imports += [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
+        elif isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "READS":
+            reports.add(ast.literal_eval(node.value))
         else:
             todo += ast.iter_child_nodes(node)
-    return names
+    return _Needs(imports, reports)

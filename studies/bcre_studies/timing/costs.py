@@ -19,21 +19,17 @@ import math
 import statistics
 from dataclasses import dataclass
 from functools import cached_property, partial
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-import bcre_pde
-from bcre_studies.comparison.compare import significant
-from bcre_studies.models.simulate import frame_times, problem_of, run_automaton
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.models.registry import AUTOMATON, BCRE, CANDIDATES, SCHEMES
+from bcre_studies.models.run import frame_times
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene
-from bcre_studies.system.files import REPORTS, replace_text
+from bcre_studies.system.records import record
 from bcre_studies.timing.clock import Call, interleaved
-
-MODELS = ("upwind", "calibrated", "limited", "pde")
-"""The automaton's schemes, and BCRE by Runge-Kutta."""
 
 CLOSURES = ("none", "kappa", "v_up", "kappa v_up")
 """What the exchange has beyond gamma R (S - Sc)."""
@@ -41,16 +37,16 @@ CLOSURES = ("none", "kappa", "v_up", "kappa v_up")
 CELLS = (50, 800, 12_800)
 """Where the cost of a cell and step is measured."""
 
-CELL_STEPS = {"upwind": 2e6, "calibrated": 2e6, "limited": 5e5, "pde": 6e4}
+CELL_STEPS = dict(zip(CANDIDATES, (2e6, 2e6, 5e5, 6e4), strict=True))
 """Cell-steps of a measured run: some milliseconds."""
 
 FRAMES = 40
-"""Frames of the run that tells what a frame costs, of one step each."""
+"""Frames of the run that measures the cost of a frame, one step each."""
 
 COURANT = 0.1
 """Of the measured runs: well below every bound."""
 
-RECORD = REPORTS / "speed" / "costs.csv"
+READS = "speed/costs.csv"
 
 
 @dataclass(frozen=True)
@@ -66,7 +62,7 @@ class Costs:
 
         Parameters
         ----------
-        model, closures: one of :data:`MODELS` and one of :data:`CLOSURES`.
+        model, closures: one of ``registry.CANDIDATES`` and one of :data:`CLOSURES`.
         cells, steps: of the run; frames: recorded times after the start.
 
         Raises
@@ -78,7 +74,8 @@ class Costs:
             grids, rates, frame_s = self._rows[model, closures]
         except KeyError:
             raise ValueError(
-                f"model = {model!r}, closures = {closures!r}: must be one of {MODELS} and one of "
+                f"model = {model!r}, closures = {closures!r}: must be one of "
+                f"{(*CANDIDATES,)} and one of "
                 f"{CLOSURES}"
             ) from None
         rate = float(np.exp(np.interp(np.log(cells), grids, rates)))
@@ -108,35 +105,28 @@ def closures_of(scene: Scene) -> str:
     return " ".join(present) or "none"
 
 
-def recorded(path: Path = RECORD) -> Costs:
+def recorded() -> Costs:
     """The costs of the committed record.
 
     Raises
     ------
-    OSError
+    FileNotFoundError
         where there is no record.
     """
-    return Costs(pd.read_csv(path))
-
-
-def record(path: Path = RECORD) -> Costs:
-    """Measure, and write the record."""
-    table = measure()
-    replace_text(path, table.to_csv(index=False, lineterminator="\n"))
-    return Costs(table)
+    return Costs(pd.read_csv(record(READS)))
 
 
 def measure() -> pd.DataFrame:
     """Costs on this machine, all runs taking turns: about ten seconds once all is compiled."""
-    runs = {case: _run(*case) for case in itertools.product(MODELS, CLOSURES, CELLS)}
-    frames = {(model, "frame", CELLS[0]): _frames(model) for model in MODELS}
+    runs = {case: _run(*case) for case in itertools.product(CANDIDATES, CLOSURES, CELLS)}
+    frames = {(model, "frame", CELLS[0]): _frames(model) for model in CANDIDATES}
     named = {" ".join(map(str, key)): call for key, (call, _) in (runs | frames).items()}
     times = interleaved(named).set_index("name")["median_s"]
-    per_frame = {model: times[f"{model} frame {CELLS[0]}"] / FRAMES for model in MODELS}
-    schemes = statistics.median(per_frame[model] for model in MODELS[:-1])  # they share that code
+    per_frame = {model: times[f"{model} frame {CELLS[0]}"] / FRAMES for model in CANDIDATES}
+    schemes = statistics.median(per_frame[model] for model in SCHEMES)  # they share that code
     rows = []
     for (model, closures, cells), (_, steps) in runs.items():
-        frame_s = per_frame["pde"] if model == "pde" else schemes
+        frame_s = schemes if model in SCHEMES else per_frame[model]
         taken = max(times[f"{model} {closures} {cells}"] - frame_s, 1e-9)
         rows.append((model, closures, cells, taken / (cells * steps), frame_s))
     table = pd.DataFrame(rows, columns=["model", "closures", "cells", "cell_step_s", "frame_s"])
@@ -158,11 +148,10 @@ def _call(model: str, scene: Scene, steps: float, frames: int) -> tuple[Call, in
     step = COURANT * scene.d / scene.material.v
     scene = scene.with_changes(until=math.ceil(steps) * step)
     times = frame_times(scene, frames + 1)[1:]
-    if model == "pde":
-        call: Call = partial(bcre_pde.solve, problem_of(scene), times, scene.domain.cells)
-        return call, bcre_pde.solve(problem_of(scene), times, scene.domain.cells).steps
-    scene = scene.with_changes(step=step)
-    return partial(run_automaton, scene, times), math.ceil(steps)
+    if model in SCHEMES:
+        return partial(AUTOMATON.run, scene.with_changes(step=step), times), math.ceil(steps)
+    call = partial(BCRE.run, scene, times, scene.domain.cells)
+    return call, call().steps
 
 
 def _scene(model: str, closures: str, cells: int) -> Scene:
@@ -170,7 +159,7 @@ def _scene(model: str, closures: str, cells: int) -> Scene:
     material = {"v": 1.0, "D": 0.1, "gamma": 0.1, "Sc": 0.5}
     material |= {"kappa": 0.01} if "kappa" in closures else {}
     material |= {"v_up": 1.0} if "v_up" in closures else {}
-    scheme = {} if model == "pde" else {"automaton": {"scheme": model}}
+    scheme = {"automaton": {"scheme": model}} if model in SCHEMES else {}
     return Scene.model_validate(
         {
             "title": "Waves under an even layer",

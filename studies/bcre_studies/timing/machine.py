@@ -39,7 +39,7 @@ class Load:
 
 
 def description() -> dict[str, str]:
-    """The machine in words for a record: nothing that tells whose it is or where."""
+    """The machine in words, without anything that identifies its owner or place."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     described = {
         "processor": _processor(),

@@ -12,21 +12,22 @@ is what the second layer is for. A pulse of rolling sand is given to it as heigh
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
 
-import bcre_pde
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import significant
-from bcre_studies.models.height_only import settle
-from bcre_studies.models.simulate import as_run, problem_of, run_automaton
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.comparison.wording import sentences, when
+from bcre_studies.models.registry import AUTOMATON, BCRE, HEIGHT_ONLY, Look
+from bcre_studies.models.run import Run
 from bcre_studies.observables.outcome import slope
 from bcre_studies.reporting import style
-from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -37,6 +38,9 @@ CELLS = 200
 WAVE_CELLS = 800
 """So that the shortest waves of the rough slope keep their height in BCRE."""
 CHANGED = 0.01
+SLOPE = "final S - Sc"
+MODELS = (HEIGHT_ONLY, AUTOMATON, BCRE)
+LOOKS: tuple[Look, ...] = ({}, {"markersize": 10, "markerfacecolor": "none"}, {})
 TOLERANCE = 0.05
 WHY = "of the slope's excess at the start: a twentieth of what there is to lose"
 
@@ -59,64 +63,61 @@ def _case(case: tuple[str, float, float]) -> Row:
     return roughness() if kind == "roughness" else reach()
 
 
-def _row(quantity: str, case: str, control: float, automaton: float, pde: float) -> Row:
-    values = {"one_variable": control, "automaton": automaton, "pde": pde}
-    rounded = {name: significant(round(value, 4) + 0.0, 3) for name, value in values.items()}
-    return {"quantity": quantity, "case": case, **rounded}
-
-
 def final_slope(excess: float, pulse: float) -> Row:
     """S - Sc at the end of figure 1 on a slope Sc + excess, with a pulse or undisturbed."""
     scene = load("figure1").with_changes(
-        **{"until": 2000.0, "surface.0.slope": 0.5 + excess, "rolling.0.amplitude": pulse}
+        **{"until": 2000.0, "surface.0.slope": 0.5 + excess, "rolling.0.amplitude": pulse},
+        **{"solver.tolerance": 1e-4},
     )
-    x, Sc = scene.centres(), scene.material.Sc
-    h, R = scene.initial(x)
-    control = slope(x, settle(h + R, Sc * scene.d, False))
-    two_layer = slope(x, run_automaton(scene, [scene.time.until]).h[-1])
-    solution = bcre_pde.solve(problem_of(scene), [scene.time.until], CELLS, tolerance=1e-4)
-    pde = slope(solution.x, solution.h[-1])
-    case = f"S0 - Sc = {excess:g}, pulse {pulse:g}"
-    return _row("final S - Sc", case, control - Sc, two_layer - Sc, pde - Sc)
+    Sc = scene.material.Sc
+    return _row(SLOPE, slope_case(excess, pulse), scene, lambda run: slope(run.x, run.h[-1]) - Sc)
+
+
+def slope_case(excess: float, pulse: float) -> str:
+    """What the table calls it."""
+    return f"S0 - Sc = {excess:g}, pulse {pulse:g}"
 
 
 def roughness() -> Row:
     """RMS of u at the end of rough_slope, relative to the start."""
-    scene = load("rough_slope")
-    x, Sc = scene.centres(), scene.material.Sc
-    h, _ = scene.initial(x)
-    start = float(np.std(h + Sc * x))
-    control = settle(h, Sc * scene.d, True) + Sc * x
-    two_layer = run_automaton(scene, [scene.time.until]).u[-1]
-    pde = bcre_pde.solve(problem_of(scene), [scene.time.until], WAVE_CELLS).u[-1]
-    values = [float(np.std(u)) / start for u in (control, two_layer, pde)]
-    return _row("RMS of u, end over start", "rough_slope", *values)
+    return _row(
+        "RMS of u, end over start",
+        "rough_slope",
+        load("rough_slope"),
+        lambda run: float(np.std(run.u[-1]) / np.std(run.u[0])),
+        WAVE_CELLS,
+    )
 
 
 def reach() -> Row:
     """How far uphill of the pulse's centre the surface of figure 3 changes by 1 % of the most."""
     scene = load("figure3")
-    x = scene.centres()
-    h, R = scene.initial(x)
-    control = settle(h + R, scene.material.Sc * scene.d, False) - (h + R)
-    automaton = run_automaton(scene, [0.0, scene.time.until])
-    pde = as_run(scene, bcre_pde.solve(problem_of(scene), [0.0, scene.time.until], CELLS))
-    changes = [(x, control), *((run.x, run.h[-1] - run.h[0]) for run in (automaton, pde))]
-    return _row("reach uphill", "figure3", *(_reach(scene, *change) for change in changes))
+    x, (_, R) = scene.centres(), scene.initial(scene.centres())
+    centre = float(R @ x / R.sum())
+
+    def reached(run: Run) -> float:
+        change = np.abs(run.h[-1] - run.h[0])
+        return centre - float(run.x[change >= CHANGED * change.max()][0])
+
+    return _row("reach uphill", "figure3", scene, reached)
 
 
-def _reach(scene: Scene, x: Array, change: Array) -> float:
-    x0, R0 = scene.centres(), scene.initial(scene.centres())[1]
-    centre = float(R0 @ x0 / R0.sum())
-    changed = np.abs(change) >= CHANGED * np.abs(change).max()
-    return centre - float(x[changed][0])
+def _row(
+    quantity: str, case: str, scene: Scene, measure: Callable[[Run], float], cells: int = CELLS
+) -> Row:
+    """What is measured at the end of the scene in every model; BCRE on so many cells."""
+    row: Row = {"quantity": quantity, "case": case}
+    for model in MODELS:
+        run = model.run(scene, [0.0, scene.time.until], cells if model is BCRE else None)
+        row[model.column] = significant(round(measure(run), 4) + 0.0, 3)
+    return row
 
 
 def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     """Three properties need no second layer; a second critical angle does."""
     table = tables["comparison"].set_index(["quantity", "case"])
     slopes = {
-        (excess, pulse): table.loc[("final S - Sc", f"S0 - Sc = {excess:g}, pulse {pulse:g}")]
+        (excess, pulse): table.loc[(SLOPE, slope_case(excess, pulse))]
         for excess in EXCESSES
         for pulse in PULSES
     }
@@ -124,70 +125,67 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     far = table.loc[("reach uphill", "figure3")]
     steep, gentle = slopes[EXCESSES[-1], 1.0], slopes[EXCESSES[0], 1.0]
     returns = all(
-        abs(row["one_variable"]) <= TOLERANCE * excess for (excess, _), row in slopes.items()
+        abs(row.one_variable) <= TOLERANCE * excess for (excess, _), row in slopes.items()
     )
     stands = all(
-        abs(slopes[excess, 0.0][model] - excess) <= TOLERANCE * excess
+        abs(slopes[excess, 0.0][model.column] - excess) <= TOLERANCE * excess
         for excess in EXCESSES
-        for model in ("automaton", "pde")
+        for model in (AUTOMATON, BCRE)
     )
     tolerance = f"{TOLERANCE:.0%} {WHY}"
+    still = slopes[EXCESSES[-1], 0.0]
+
+    def claim(name: str, statement: str, good: bool, evidence: str) -> Claim:
+        verdict = Verdict.AGREE if good else Verdict.DISAGREE
+        return Claim(name, statement, verdict, evidence, tolerance)
+
     return [
-        Claim(
+        claim(
             "return to repose",
             "Returning to the repose slope needs no second layer.",
-            Verdict.AGREE if returns else Verdict.DISAGREE,
-            f"the control ends at S - Sc = {steep['one_variable']:g} from S0 - Sc = "
-            f"{EXCESSES[-1]:g} and at {gentle['one_variable']:g} from {EXCESSES[0]:g}, where the "
-            f"two-layer automaton keeps {gentle['automaton']:g} and BCRE {gentle['pde']:g}",
-            tolerance,
+            returns,
+            f"the control ends at S - Sc = {steep.one_variable:g} from S0 - Sc = "
+            f"{EXCESSES[-1]:g} and at {gentle.one_variable:g} from {EXCESSES[0]:g}; from "
+            f"{EXCESSES[0]:g} the two-layer automaton ends at {gentle.automaton:g} and BCRE at "
+            f"{gentle.pde:g}",
         ),
-        Claim(
+        claim(
             "decay of roughness",
             "Smoothing needs no second layer.",
-            Verdict.AGREE if rough["one_variable"] < 1 - TOLERANCE else Verdict.DISAGREE,
-            f"the RMS of rough_slope falls to {rough['one_variable']:g} of its start in the "
-            f"control, to {rough['automaton']:g} in the two-layer automaton, and to "
-            f"{rough['pde']:g} in BCRE with kappa = 0",
-            tolerance,
+            rough.one_variable < 1 - TOLERANCE,
+            f"of the RMS of rough_slope {rough.one_variable:g} is left in the control, "
+            f"{rough.automaton:g} in the two-layer automaton and {rough.pde:g} in BCRE with "
+            "kappa = 0",
         ),
-        Claim(
+        claim(
             "uphill reach",
             "With the second layer the surface changes farther uphill of a pulse than without.",
-            Verdict.AGREE
-            if far["one_variable"] < far["automaton"] - TOLERANCE * abs(far["automaton"])
-            else Verdict.DISAGREE,
-            f"in figure 3 it changes from {far['one_variable']:g} above the pulse's centre in the "
-            f"control, {far['automaton']:g} in the two-layer automaton, {far['pde']:g} in BCRE",
-            tolerance,
+            far.one_variable < far.automaton - TOLERANCE * abs(far.automaton),
+            f"in figure 3 it changes from {far.one_variable:g} above the pulse's centre in the "
+            f"control, {far.automaton:g} in the two-layer automaton, {far.pde:g} in BCRE",
         ),
-        Claim(
+        claim(
             "second critical angle",
             "A slope that stands above repose until it is disturbed needs the second layer.",
-            Verdict.AGREE if returns and stands else Verdict.DISAGREE,
-            f"undisturbed, S0 - Sc = {EXCESSES[-1]:g} falls to "
-            f"{slopes[EXCESSES[-1], 0.0]['one_variable']:g} in the control, so that Sc is its only "
-            f"critical slope, and stays at {slopes[EXCESSES[-1], 0.0]['automaton']:g} in the "
-            f"two-layer automaton and {slopes[EXCESSES[-1], 0.0]['pde']:g} in BCRE",
-            tolerance,
+            returns and stands,
+            sentences(
+                f"undisturbed, S0 - Sc = {EXCESSES[-1]:g} ends at {still.one_variable:g} in the "
+                f"control, {still.automaton:g} in the two-layer automaton and {still.pde:g} in "
+                "BCRE",
+                when(returns, "Sc is the control's only critical slope"),
+            ),
         ),
     ]
 
 
 def draw(tables: dict[str, pd.DataFrame]) -> Figure:
     """Final slope against initial slope, undisturbed and after a pulse."""
-    table = tables["comparison"]
+    table = tables["comparison"].set_index("case")
     figure, axes = style.panels(1, 2)
-    looks = {
-        "one_variable": {"color": "k", "marker": "D", "label": "height alone"},
-        "automaton": {"color": style.MODELS["ca"]["color"], "marker": "o", "markersize": 10}
-        | {"markerfacecolor": "none", "label": "two-layer automaton"},
-        "pde": {"color": style.MODELS["pde"]["color"], "marker": "s", "label": "BCRE (PDE)"},
-    }
     for axis, pulse in zip(axes, PULSES, strict=True):
-        rows = table[table["case"].str.endswith(f"pulse {pulse:g}")]
-        for column, look in looks.items():
-            axis.plot(EXCESSES, rows[column], linestyle="", **look)
+        rows = table.loc[[slope_case(excess, pulse) for excess in EXCESSES]]
+        for model, look in zip(MODELS, LOOKS, strict=True):
+            axis.plot(EXCESSES, rows[model.column], label=model.label, **model.markers(**look))
         axis.set_xlabel("S0 - Sc")
         axis.set_ylabel("final S - Sc")
         axis.set_title("undisturbed" if pulse == 0 else f"after a pulse of {pulse:g}", loc="left")

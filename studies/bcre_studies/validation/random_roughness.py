@@ -13,14 +13,14 @@ import numpy as np
 import pandas as pd
 from scipy.stats import bootstrap
 
-import bcre_pde
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import significant
-from bcre_studies.models.simulate import effective_problem_of, problem_of, run_automaton
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED
 from bcre_studies.observables.fronts import roughness
 from bcre_studies.reporting import style
 from bcre_studies.scenes.scene import load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -30,22 +30,21 @@ CELLS = 400
 TOLERANCE = 0.05
 WHY = "of the roughness at the start, as in the study of single modes"
 CONFIDENCE = 0.95
-MODELS = {"ca": "automaton", "pde": "pde", "pde effective": "pde_effective"}
 
 
 def run() -> dict[str, pd.DataFrame]:
     """One row a seed, and the means with their intervals."""
     seeds = pd.DataFrame(each(_seed, SEEDS, "random_roughness"))
     rows = []
-    for column in MODELS.values():
-        values = seeds[column].to_numpy()
+    for model in COMPARED:
+        values = seeds[model.column].to_numpy()
         interval = bootstrap(
             (values,), np.mean, confidence_level=CONFIDENCE, rng=np.random.default_rng(0)
         ).confidence_interval
         rows.append(
             {
                 "quantity": "RMS of u, end over start",
-                "model": column,
+                "model": model.column,
                 "seeds": values.size,
                 "mean": significant(float(values.mean()), 4),
                 "low": significant(float(interval.low), 4),
@@ -58,20 +57,17 @@ def run() -> dict[str, pd.DataFrame]:
 def _seed(seed: int) -> dict[str, float]:
     scene = load("rough_slope").with_changes(**{"surface.1.seed": seed, "step": 1.0})
     times = [0.0, scene.time.until]
-    runs = {
-        "automaton": run_automaton(scene, times).u,
-        "pde": bcre_pde.solve(problem_of(scene), times, CELLS).u,
-        "pde_effective": bcre_pde.solve(effective_problem_of(scene), times, CELLS).u,
-    }
-    ratios = {name: roughness(u[-1]) / roughness(u[0]) for name, u in runs.items()}
-    return {"seed": seed, **{name: significant(ratio, 4) for name, ratio in ratios.items()}}
+    row: dict[str, float] = {"seed": seed}
+    for model in COMPARED:
+        u = model.run(scene, times, None if model is AUTOMATON else CELLS).u
+        row[model.column] = significant(roughness(u[-1]) / roughness(u[0]), 4)
+    return row
 
 
 def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     """The verdict on the rough slope does not hang on its seed."""
     table = tables["comparison"].set_index("model")
-    words = {name: _interval(row) for name, row in table.iterrows()}
-    automaton, pde, effective = (table.loc[name] for name in MODELS.values())
+    automaton, pde, effective = (table.loc[model.column] for model in COMPARED)
     apart = pde["low"] - automaton["high"] > TOLERANCE
     close = max(
         abs(effective["high"] - automaton["low"]), abs(automaton["high"] - effective["low"])
@@ -79,15 +75,15 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     if not apart:
         verdict = Verdict.AGREE
     else:
-        verdict = Verdict.AGREE_EFFECTIVE if close <= TOLERANCE else Verdict.DISAGREE
+        verdict = Verdict.EXPLAINED if close <= TOLERANCE else Verdict.DISAGREE
     return [
         Claim(
             name="random roughness",
             statement="Random roughness decays in the automaton as in BCRE, whatever its seed.",
             verdict=verdict,
             evidence=f"of the roughness at the start there is left, in the mean of "
-            f"{automaton['seeds']} seeds with its 95 % interval: {words['automaton']} in the "
-            f"automaton, {words['pde']} in BCRE with kappa = 0, {words['pde_effective']} with "
+            f"{automaton['seeds']} seeds with its 95 % interval: {_interval(automaton)} in the "
+            f"automaton, {_interval(pde)} in BCRE with kappa = 0, {_interval(effective)} with "
             f"D_eff and kappa_eff",
             tolerance=f"{TOLERANCE:.0%} {WHY}",
         )
@@ -103,11 +99,11 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
     seeds, table = tables["seeds"], tables["comparison"].set_index("model")
     figure, (axis,) = style.panels(1, 1)
     figure.set_size_inches(7.0, 3.6)
-    for place, (model, column) in enumerate(MODELS.items()):
-        color, marker = style.MODELS[model]["color"], style.MARKERS[model]
+    for place, model in enumerate(COMPARED):
         spread = np.linspace(-0.25, 0.25, len(seeds))
-        axis.plot(place + spread, seeds[column], marker, color=color, alpha=0.5)
-        row = table.loc[column]
+        look = model.markers(fillstyle="full", markersize=4.5, alpha=0.5)
+        axis.plot(place + spread, seeds[model.column], **look)
+        row = table.loc[model.column]
         axis.errorbar(
             place,
             row["mean"],
@@ -116,7 +112,7 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
             markersize=22,
             capsize=4,
         )
-    axis.set_xticks(range(len(MODELS)), ["automaton", "BCRE", "BCRE, effective"])
+    axis.set_xticks(range(len(COMPARED)), [AUTOMATON.label, BCRE.label, "BCRE, effective"])
     axis.set_ylim(0, 1.05)
     axis.set_ylabel("RMS of u, end over start")
     axis.set_title("32 seeds, mean and 95 % interval", loc="left")

@@ -26,18 +26,21 @@ import pandas as pd
 import bcre_ca
 import bcre_pde
 from bcre_ca.rule import Scheme
-from bcre_pde import exact
-from bcre_pde.solve import TOLERANCE, Method
-from bcre_studies.comparison.claim import Claim, Verdict, worst
-from bcre_studies.comparison.compare import significant
+from bcre_pde import Method, exact, simple_wave
+from bcre_pde.solve import TOLERANCE
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict, worst
+from bcre_studies.models.registry import AUTOMATON, BCRE, SCHEMES
 from bcre_studies.reporting import style
 from bcre_studies.scenes.domain import Array
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-GRIDS = {"ca": (200, 400, 800, 1600, 3200), "pde": (25, 50, 100, 200, 400)}
+CA, PDE = AUTOMATON.name, BCRE.name
+GRIDS = {CA: (200, 400, 800, 1600, 3200), PDE: (25, 50, 100, 200, 400)}
 SURFACE_MODE_GRIDS = (8, 12, 16, 24, 32)
 """A mode of 1e-7 leaves no more room above rounding."""
 STEP_SHARES = (0.25, 0.5, 0.9)
@@ -54,12 +57,12 @@ LIMITED_GRIDS = (100, 200, 400, 800, 1600)
 long."""
 IMPLICIT_GRIDS = (25, 40, 60, 90, 135)
 """Their Jacobians make finer grids slow, and their tolerance leaves no room for more."""
-FORMAL_ORDER = {"ca": 1.0, "ca calibrated": 1.0, "ca limited": 2.0, "pde": 5.0}
+FORMAL_ORDER = {CA: 1.0, "calibrated": 1.0, "limited": 2.0, PDE: 5.0}
 ORDER_RANGE = {
-    "ca": (0.9, 1.1),
-    "ca calibrated": (0.9, np.inf),
-    "ca limited": (1.8, 2.2),
-    "pde": (4.0, np.inf),
+    CA: (0.9, 1.1),
+    "calibrated": (0.9, np.inf),
+    "limited": (1.8, 2.2),
+    PDE: (4.0, np.inf),
 }
 WHY_ORDER = (
     "within a tenth of the formal order for the automaton; for the PDE one below its formal 5, "
@@ -67,9 +70,9 @@ WHY_ORDER = (
     "smoother than its grid asks for converges faster"
 )
 WHY_ORDER_OF_SCHEME = {
-    "ca calibrated": "a tenth below the formal order, and no upper end, since its leading error is "
+    "calibrated": "a tenth below the formal order, and no upper end, since its leading error is "
     "calibrated away where D_eff = D and the flow is linear",
-    "ca limited": "within a tenth of the formal order",
+    "limited": "within a tenth of the formal order",
 }
 WHY_LOWER = {
     "calibrated": "",
@@ -77,7 +80,7 @@ WHY_LOWER = {
     "grid to grid and takes less and less of the drift's error, (1 - c)(1 - 2 c) d^2, away: there "
     "the order is that of grids on which v dt/d is not small yet",
 }
-LARGEST_ERROR = {"ca": 0.01, "ca calibrated": 0.01, "ca limited": 0.01, "pde": 5e-4}
+LARGEST_ERROR = {CA: 0.01, "calibrated": 0.01, "limited": 0.01, PDE: 5e-4}
 WHY_ERROR = (
     "on the finest grid, relative to the spread of R: 1 % for the first-order scheme; for the PDE "
     "a hundredth of the 5 % that the studies call agreement"
@@ -185,7 +188,7 @@ def run() -> dict[str, pd.DataFrame]:
     cases = [
         (label, model, scheme)
         for label, solution in solutions().items()
-        for model, schemes in (("ca", AUTOMATA), ("pde", METHODS))
+        for model, schemes in ((CA, AUTOMATA), (PDE, METHODS))
         for scheme in schemes
         if not (scheme in ("LSODA", "BDF") and solution.name == "surface mode")
     ]
@@ -196,9 +199,7 @@ def run() -> dict[str, pd.DataFrame]:
         for key, group in table.groupby(list(KEYS), sort=False)
     ]
     broken = [
-        row
-        for rows in each(_past_breaking, ["ca", "pde"], "order_of_accuracy, t > t*")
-        for row in rows
+        row for rows in each(_past_breaking, [CA, PDE], "order_of_accuracy, t > t*") for row in rows
     ]
     return {
         "comparison": pd.DataFrame(fits),
@@ -215,7 +216,7 @@ def _errors_of(case: tuple[str, str, Any]) -> list[dict[str, Any]]:
     solution = solutions()[label]
     rows = []
     for cells in _grids(solution, model, scheme):
-        if model == "ca":
+        if model == CA:
             x, R = automaton_layer(solution, cells, scheme[1], scheme[0])
         else:
             x, R = pde_layer(solution, cells, scheme)
@@ -225,7 +226,7 @@ def _errors_of(case: tuple[str, str, Any]) -> list[dict[str, Any]]:
             {
                 "solution": label,
                 "model": model,
-                "scheme": _named(*scheme) if model == "ca" else scheme,
+                "scheme": _named(*scheme) if model == CA else scheme,
                 "cells": cells,
                 **{norm: significant(error / spread, 2) for norm, error in absolute.items()},
                 "floor": _floor(solution, model, scheme) / spread,
@@ -240,25 +241,25 @@ def _named(scheme: Scheme, share: float) -> str:
 
 
 def _kind(model: str, scheme: str) -> str:
-    """The key of :data:`FORMAL_ORDER`: the model, and the automaton's scheme but for its own."""
+    """The key of :data:`FORMAL_ORDER`: the scheme of the automaton if not the paper's, or model."""
     scheme, comma, _ = scheme.partition(",")
-    return f"{model} {scheme}" if comma else model
+    return scheme if comma else model
 
 
 def _grids(solution: exact.ExactSolution, model: str, scheme: Any) -> tuple[int, ...]:
-    if model == "ca" and scheme[0] != "limited":
-        return GRIDS["ca"]
-    if model == "ca":
+    if model == CA and scheme[0] != "limited":
+        return GRIDS[CA]
+    if model == CA:
         coarser = 2 if solution.name == "surface mode" else 1
         return tuple(cells // coarser for cells in LIMITED_GRIDS)
     if solution.name == "surface mode":
         return SURFACE_MODE_GRIDS
-    return IMPLICIT_GRIDS if scheme in ("LSODA", "BDF") else GRIDS["pde"]
+    return IMPLICIT_GRIDS if scheme in ("LSODA", "BDF") else GRIDS[PDE]
 
 
 def _floor(solution: exact.ExactSolution, model: str, scheme: Any) -> float:
     """Error below which the tolerance in time, or rounding, counts."""
-    if model == "ca":
+    if model == CA:
         return solution.floor
     left = TIME_ERROR["explicit" if scheme in EXPLICIT else "implicit"]
     largest = float(solution.layers(np.linspace(*solution.window, 200), solution.until)[1].max())
@@ -291,7 +292,7 @@ def _past_breaking(model: str) -> list[dict[str, Any]]:
     x = np.linspace(0.5, 19.5, 400)
     start = solution.layers(np.linspace(0, 20, 20001), 0.0)[1]
     rise = float(np.gradient(start, 0.001).max())
-    breaking = exact.breaking_time(rise, solution.material.gamma)
+    breaking = simple_wave.breaking_time(solution.material.gamma * rise)
     rows = []
     for part in (1.1, 1.5, 2.0):
         later = replace(solution, until=part * breaking)
@@ -299,7 +300,7 @@ def _past_breaking(model: str) -> list[dict[str, Any]]:
         for cells in BROKEN_GRIDS:
             at, R = (
                 automaton_layer(later, cells, 0.5)
-                if model == "ca"
+                if model == CA
                 else pde_layer(later, cells, "runge-kutta", TOLERANCE)
             )
             profiles.append(np.interp(x, at, R))
@@ -323,7 +324,7 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     table, broken = tables["comparison"], tables["past_breaking"]
     claims = []
     kinds = [_kind(*key) for key in zip(table["model"], table["scheme"], strict=True)]
-    for model, name in (("ca", "automaton"), ("pde", "PDE")):
+    for model, name in ((CA, "automaton"), (PDE, "PDE")):
         rows = table[[kind == model for kind in kinds]]
         low, high = rows["order_L1"].min(), rows["order_L1"].max()
         claims.append(
@@ -362,8 +363,7 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
 
 def _claim_of_scheme(table: pd.DataFrame, scheme: str) -> Claim:
     """The order of one of the automaton's schemes beside the printed one."""
-    kind = f"ca {scheme}"
-    rows = table[(table["model"] == "ca") & table["scheme"].str.startswith(f"{scheme},")]
+    rows = table[(table["model"] == CA) & table["scheme"].str.startswith(f"{scheme},")]
     off = rows[rows["verdict"] != str(Verdict.AGREE)]
     least, most = rows.loc[rows["order_L1"].idxmin()], rows.loc[rows["order_L1"].idxmax()]
     why = WHY_LOWER[scheme] if len(off) else ""
@@ -371,39 +371,21 @@ def _claim_of_scheme(table: pd.DataFrame, scheme: str) -> Claim:
     return Claim(
         name=f"order of the {scheme} scheme",
         statement=f"The {scheme} automaton converges to the exact solutions at order "
-        f"{FORMAL_ORDER[kind]:g}{' or more' if ORDER_RANGE[kind][1] == np.inf else ''}.",
+        f"{FORMAL_ORDER[scheme]:g}{' or more' if ORDER_RANGE[scheme][1] == np.inf else ''}.",
         verdict=worst(rows["verdict"]),
         evidence=f"fitted L1 orders from {least['order_L1']:g} ({least['solution']}) to "
         f"{most['order_L1']:g} ({most['solution']}), largest error on a finest grid "
         f"{rows['L1_on_finest'].max():.2g}; outside: {outside or 'none'}{why}",
-        tolerance=f"order at least {ORDER_RANGE[kind][0]:g}: {WHY_ORDER_OF_SCHEME[kind]}; error "
-        f"{LARGEST_ERROR[kind]:g}: {WHY_ERROR}",
+        tolerance=f"order at least {ORDER_RANGE[scheme][0]:g}: {WHY_ORDER_OF_SCHEME[scheme]}; "
+        f"error {LARGEST_ERROR[scheme]:g}: {WHY_ERROR}",
     )
 
 
-LOOKS: dict[str, style.Look] = {
-    "0.5 of the stable step": {
-        **style.MODELS["ca"],
-        "marker": style.MARKERS["ca"],
-        "label": "automaton",
-    },
-    "calibrated, 0.5 of the stable step": {
-        "color": "#c9962b",
-        "linestyle": "-.",
-        "marker": "D",
-        "label": "calibrated automaton",
-    },
-    "limited, 0.5 of the stable step": {
-        "color": "#7a5ea8",
-        "linestyle": (0, (6, 1)),
-        "marker": "v",
-        "label": "limited automaton",
-    },
-    "runge-kutta": {
-        **style.MODELS["pde"],
-        "marker": style.MARKERS["pde"],
-        "label": "BCRE (PDE)",
-    },
+DRAWN = {
+    "0.5 of the stable step": AUTOMATON,
+    "calibrated, 0.5 of the stable step": SCHEMES["calibrated"],
+    "limited, 0.5 of the stable step": SCHEMES["limited"],
+    "runge-kutta": BCRE,
 }
 
 
@@ -413,9 +395,9 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
     labels = list(dict.fromkeys(table["solution"]))
     figure, axes = style.panels(2, (len(labels) + 1) // 2)
     for axis, label in zip(axes, labels, strict=False):
-        rows = table[(table["solution"] == label) & table["scheme"].isin(list(LOOKS))]
+        rows = table[(table["solution"] == label) & table["scheme"].isin(list(DRAWN))]
         for (model, scheme), line in rows.groupby(["model", "scheme"], sort=False):
-            axis.loglog(line["cells"], line["L1"], **LOOKS[str(scheme)])
+            axis.loglog(line["cells"], line["L1"], **DRAWN[str(scheme)].marked_line)
             slope = FORMAL_ORDER[_kind(str(model), str(scheme))]
             first = line.iloc[0]
             guide = first["L1"] * (line["cells"] / first["cells"]) ** -slope

@@ -11,23 +11,24 @@ import statistics
 from typing import Any
 
 import pandas as pd
+from rich.console import Console
 from rich.progress import track
 
 from bcre_studies.advisor.advise import Effort, advise
 from bcre_studies.advisor.options import Option
 from bcre_studies.advisor.pilot import FINEST, run_model
 from bcre_studies.advisor.question import Question
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.rounding import significant
 from bcre_studies.performance.random_scenes import random_scene
 from bcre_studies.timing.costs import recorded
 
 SCENES = 30
 PILOTS_S = 1.0
 FEW = 100
-"""Cells of the finest pilot of the times that are foretold."""
+"""Cells of the finest pilot where times are extrapolated."""
 
 RUNS = 3
-"""The advised model is run so often; the median counts."""
+"""Runs of the advised model; their median counts."""
 
 FACTOR = 2.0
 """A prediction hits if it is right to within this factor."""
@@ -36,8 +37,8 @@ FACTOR = 2.0
 def time_hits() -> pd.DataFrame:
     """Predicted and measured seconds of every option of every scene.
 
-    Once as a user is advised, and once foretold, from pilots of at most :data:`FEW` cells for finer
-    grids than those.
+    Once as a user is advised, and once extrapolated to finer grids from pilots of at most
+    :data:`FEW` cells.
 
     Returns
     -------
@@ -46,7 +47,9 @@ def time_hits() -> pd.DataFrame:
     once all is compiled.
     """
     rows = []
-    for index in track(range(SCENES), "advice, times", transient=True):
+    for index in track(
+        range(SCENES), "advice, times", transient=True, console=Console(stderr=True)
+    ):
         question = Question(random_scene(index))
         for pilots, finest in (("all", FINEST), ("coarse", FEW)):
             effort = Effort(recorded(), seconds=PILOTS_S, finest=finest)

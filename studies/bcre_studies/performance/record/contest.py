@@ -17,10 +17,10 @@ import numpy as np
 
 import bcre_ca
 import bcre_pde
-from bcre_pde import exact
-from bcre_pde.solve import Method
-from bcre_studies.comparison.compare import sample
-from bcre_studies.models.simulate import as_run, problem_of, rule_of
+from bcre_pde import Method, exact
+from bcre_studies.models.automaton import rule_of
+from bcre_studies.models.bcre import problem_of, run_of
+from bcre_studies.models.registry import SCHEMES
 from bcre_studies.observables.fronts import edge
 from bcre_studies.performance.rivals import (
     fipy_solver,
@@ -33,6 +33,7 @@ from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, load
 
 WAVE = "nonlinear wave, exact"
+PAST_SCARP = "figure 1, past its scarp"
 PDE_TOLERANCE = 1e-5
 """Local error in time per step; what it leaves is below the error in space on all these grids."""
 
@@ -51,7 +52,7 @@ def scenes() -> dict[str, Scene]:
     figure1 = load("figure1")
     return {
         "figure 1, before its scarp": figure1.with_changes(until=150.0),
-        "figure 1, past its scarp": figure1.with_changes(until=250.0, kappa=0.005),
+        PAST_SCARP: figure1.with_changes(until=250.0, kappa=0.005),
         "figure 2": load("figure2"),
         "figure 3": load("figure3"),
         WAVE: load("climbing_wave"),
@@ -88,11 +89,11 @@ METHODS: tuple[Method, ...] = ("runge-kutta", "RK45", "DOP853", "LSODA", "BDF")
 
 def own() -> tuple[Contender, ...]:
     """The automaton's schemes and the PDE's methods."""
-    automata = (("upwind", 50, 4e8), ("calibrated", 50, 4e8), ("limited", 25, 1e8))
+    limits = ((50, 4e8), (50, 4e8), (25, 1e8))
     pdes: dict[Method, float] = {"LSODA": 4e5, "BDF": 4e5}
     return tuple(
-        Contender(f"automaton, {scheme}", partial(_automaton, scheme), coarsest, most)
-        for scheme, coarsest, most in automata
+        Contender(model.label, partial(_automaton, model.name), coarsest, most)
+        for model, (coarsest, most) in zip(SCHEMES.values(), limits, strict=True)
     ) + tuple(
         Contender(f"PDE, {method}", partial(_pde, method), 25, pdes.get(method, 1.5e7))
         for method in METHODS
@@ -158,7 +159,7 @@ def _fipy(scene: Scene, cells: int) -> Solve:
 
 def _printed(scene: Scene) -> bcre_pde.Problem:
     """The scene as the paper's rule sees it, without curvature."""
-    return problem_of(scene, kappa=0.0)
+    return problem_of(scene.with_changes(kappa=0.0))
 
 
 def _step(scene: Scene, cells: int) -> float:
@@ -196,9 +197,9 @@ _known: dict[str, Truth] = {}
 
 def _truth(key: str, scene: Scene) -> Truth:
     if key not in _known:
-        _known[key] = (
-            _exact(scene) if scene.title == load("climbing_wave").title else _solved(scene)
-        )
+        # Without diffusion and curvature the only scene is that of the nonlinear wave.
+        exactly = scene.material.D == scene.material.kappa == 0
+        _known[key] = _exact(scene) if exactly else _solved(scene)
     return _known[key]
 
 
@@ -220,16 +221,16 @@ def _exact(scene: Scene) -> Truth:
 def _solved(scene: Scene) -> Truth:
     problem, until = problem_of(scene), [scene.time.until]
     runs = [
-        as_run(scene, bcre_pde.solve(problem, until, cells, tolerance=1e-8))
+        run_of(scene, bcre_pde.solve(problem, until, cells, tolerance=1e-8))
         for cells in TRUTH_CELLS
     ]
     x = runs[0].x
-    coarse, medium, fine = (sample(run, x) for run in runs)
+    coarse, medium, fine = (run.sample(x) for run in runs)
     index = bcre_pde.grid_convergence_index(fine, medium, coarse)
     finest, Sc = runs[-1], scene.material.Sc
 
     def layers(at: Array) -> tuple[Array, Array]:
-        return sample(finest, at, "u") - Sc * at, sample(finest, at)
+        return finest.sample(at, "u") - Sc * at, finest.sample(at)
 
     return Truth(layers, finest.R[-1], index.error / float(np.mean(np.abs(fine))))
 
@@ -263,8 +264,13 @@ def _front(x: Array, R: Array) -> float:
 def rungs(
     contender: Contender, scene: Scene, most: float | None = None
 ) -> Iterator[tuple[int, Solve, EndState]]:
-    """Ever finer grids with what the contender made of them, up to ``most`` cell-steps."""
+    """Ever finer grids with what the contender made of them, up to ``most`` cell-steps.
+
+    They begin with the first that can hold the start of the scene.
+    """
     cells, most = contender.coarsest, min(contender.most, most or contender.most)
+    while not scene.holds(cells):
+        cells *= contender.finer
     while True:
         solve = contender.prepare(scene, cells)
         end = solve()

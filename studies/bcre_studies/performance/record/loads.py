@@ -12,9 +12,9 @@ import numpy as np
 from pde import CartesianGrid
 
 import bcre_ca
-from bcre_ca import kernels
 from bcre_ca.rule import Ends, Scheme
-from bcre_pde import BCRE, Material
+from bcre_pde import Material
+from bcre_pde.equation import BCRE
 from bcre_studies.performance.rivals import numpy_automaton
 from bcre_studies.scenes.domain import Array
 from bcre_studies.timing.machine import Load
@@ -32,14 +32,14 @@ def wet_slope(cells: int) -> tuple[Array, Array]:
 
 def steps_for(cells: int, cell_steps: float) -> int:
     """Steps that make about so many cell-steps, and one block at least."""
-    return max(round(cell_steps / cells), kernels.BLOCK)
+    return max(round(cell_steps / cells), bcre_ca.BLOCK)
 
 
 def automaton(scheme: Scheme, cells: int, cell_steps: float = 3e7) -> Load:
     """The compiled automaton, many steps a call."""
     (h, R), steps = wet_slope(cells), steps_for(cells, cell_steps)
     rule = replace(RULE, scheme=scheme)
-    return Load(lambda: kernels.march(h, R, rule, steps, _ends(cells)), float(cells * steps))
+    return Load(lambda: bcre_ca.march(h, R, rule, steps, _ends(cells)), float(cells * steps))
 
 
 def _ends(cells: int) -> Ends:
@@ -72,7 +72,7 @@ def right_hand_side(cells: int, evaluations: float = 2e6) -> Load:
 def batch(scenes: int, cells: int, steps: int) -> Load:
     """Many scenes of one rule in one call."""
     h, R = (np.tile(layer, (scenes, 1)) for layer in wet_slope(cells))
-    return Load(lambda: kernels.march(h, R, RULE, steps, "periodic"), float(h.size * steps))
+    return Load(lambda: bcre_ca.evolve_many(h, R, RULE, steps, "periodic"), float(h.size * steps))
 
 
 def partly_wet(cells: int, share: float, steps: int) -> tuple[Load, Load]:
@@ -89,7 +89,7 @@ def partly_wet(cells: int, share: float, steps: int) -> tuple[Load, Load]:
     def fresh(R: Array) -> Load:
         def call() -> None:
             layers = h.copy(), R.copy()
-            kernels.march(*layers, rule, steps, "open")
+            bcre_ca.march(*layers, rule, steps, "open")
 
         return Load(call, float(cells * steps))
 

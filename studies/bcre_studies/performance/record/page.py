@@ -6,10 +6,9 @@ from pathlib import Path
 
 import pandas as pd
 
-from bcre_studies.performance import speed_error
-from bcre_studies.performance.record import record
-from bcre_studies.publishing.write import markdown, readable, render
+from bcre_studies.performance.record import record, work_precision
 from bcre_studies.reporting import style
+from bcre_studies.reporting.pages import markdown, readable, render
 from bcre_studies.system.files import replace_file, replace_text
 
 PARTS = {
@@ -56,7 +55,7 @@ def write(folder: Path, tables: record.Tables) -> None:
     kept = record.read(folder)
     local = folder == record.LOCAL
     contest = kept["contest"]
-    figure = speed_error.draw({"errors": contest, "recorded_contest": contest})
+    figure = work_precision.draw(contest, contest)
     replace_file(folder / "figure.svg", lambda path: style.save(figure, path))
     content = {
         "title": "Speed on this machine" if local else "Speed: the record",
@@ -93,7 +92,7 @@ def _seconds_by_error(reach: pd.DataFrame) -> pd.DataFrame:
 
 def _told(row: pd.Series) -> str:
     """Seconds, the ratio to the paper's rule, and a mark for the winner."""
-    told = f"{row['seconds']:.2g} s"
+    shown = f"{row['seconds']:.2g} s"
     if pd.notna(row["to_automaton"]):
-        told += f" ({'<= ' if row['at_least'] else ''}{row['to_automaton']:.2g} x)"
-    return f"{told} *" if row["winner"] else told
+        shown += f" ({'<= ' if row['at_least'] else ''}{row['to_automaton']:.2g} x)"
+    return f"{shown} *" if row["winner"] else shown

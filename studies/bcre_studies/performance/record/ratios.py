@@ -11,7 +11,8 @@ import numpy as np
 import pandas as pd
 
 import bcre_ca
-from bcre_studies.models.simulate import problem_of, rule_of
+from bcre_studies.models.automaton import rule_of
+from bcre_studies.models.bcre import problem_of
 from bcre_studies.performance.record import loads
 from bcre_studies.performance.rivals import method_of_lines, pypde_expressions
 from bcre_studies.scenes.scene import load

@@ -11,14 +11,16 @@ from typing import Any
 
 import pandas as pd
 
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.rounding import significant
 from bcre_studies.performance.record import contest
+from bcre_studies.system import records
 from bcre_studies.system.files import REPORTS, replace_text
 from bcre_studies.timing import machine
 from bcre_studies.timing.clock import take_turns
 
 Tables = dict[str, pd.DataFrame]
 
+READS = "speed/*.csv"
 RECORD = REPORTS / "speed"
 LOCAL = REPORTS / "local"
 
@@ -74,9 +76,20 @@ def write(tables: Tables, folder: Path) -> None:
         replace_text(folder / f"{name}.csv", rounded.to_csv(index=False, lineterminator="\n"))
 
 
-def read(folder: Path = RECORD) -> Tables:
-    """The tables of a record; empty where there is none."""
+def read(folder: Path) -> Tables:
+    """The tables of a record."""
     return {path.stem: pd.read_csv(path) for path in sorted(folder.glob("*.csv"))}
+
+
+def recorded(*names: str) -> Tables:
+    """These tables of the committed record.
+
+    Raises
+    ------
+    FileNotFoundError
+        naming the one that is missing.
+    """
+    return {name: pd.read_csv(records.record(f"speed/{name}.csv")) for name in names}
 
 
 def race(

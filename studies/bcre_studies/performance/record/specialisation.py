@@ -10,21 +10,20 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 import bcre_ca
-from bcre_studies.comparison.compare import significant
-from bcre_studies.system.files import REPORTS
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.system.records import record
 from bcre_studies.timing.clock import Call, interleaved
 
 CELLS = (1000, 100_000)
 CELL_STEPS = 20_000_000
 ROUNDS = 7
-RECORD = REPORTS / "speed" / "specialisation.csv"
+READS = "speed/specialisation.csv"
 
 SINGLE = "double precision"
 TERMS: dict[str, float] = {"D": 1e-300, "kappa": 1e-300, "v_up": 1e300, "dry": 1e-300}
@@ -57,15 +56,15 @@ def specialisation_gains() -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def recorded(path: Path = RECORD) -> pd.DataFrame:
+def recorded() -> pd.DataFrame:
     """The gains of the committed record: columns term, cells, ratio.
 
     Raises
     ------
-    OSError
+    FileNotFoundError
         where there is no record.
     """
-    return pd.read_csv(path)
+    return pd.read_csv(record(READS))
 
 
 def _pair(term: str, cells: int) -> tuple[Call, Call]:

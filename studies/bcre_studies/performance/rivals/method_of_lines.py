@@ -38,7 +38,7 @@ def prepare(
     Parameters
     ----------
     tolerance: local error per step, relative to each value and to the largest rolling layer.
-    banded: whether LSODA is told of the band; with periodic ends there is none to tell of.
+    banded: whether LSODA may use the band; with periodic ends the matrix has none.
 
     Raises
     ------

@@ -9,12 +9,10 @@ operations of :func:`bcre_ca.step`, which it therefore equals to the bit.
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 
 import bcre_ca
-from bcre_pde import Problem
+from bcre_pde import Ends, Problem
 from bcre_studies.performance.rivals.rivals import (
     Array,
     EndState,
@@ -54,7 +52,7 @@ def march(
     R: Array,
     rule: bcre_ca.Rule,
     steps: int,
-    ends: Literal["open", "periodic"] = "open",
+    ends: Ends = "open",
 ) -> None:
     """Take ``steps`` steps in place; h and R of shape (N,), N >= 1.
 
@@ -65,26 +63,28 @@ def march(
     """
     if rule != bcre_ca.Rule(rule.v, rule.D, rule.gamma, rule.Sc, rule.d, rule.dt, rule.sign):
         raise ValueError(f"{rule}: must be the paper's synchronous rule and nothing more")
+    if ends == "wall":
+        raise ValueError(f"ends = {ends!r}: must be 'open' or 'periodic'")
     fold = rule.coefficients()
-    b = fold.b or 0.0
+    b = fold.diffusion or 0.0
     drop = rule.Sc * rule.d * h.size
     flux, exchange, scratch = np.zeros_like(h), np.zeros_like(h), np.zeros_like(h)
     for _ in range(steps):
-        np.multiply(fold.q, R, out=flux)
+        np.multiply(fold.outgoing, R, out=flux)
         np.multiply(b, R[1:], out=scratch[1:])
         np.subtract(flux[:-1], scratch[1:], out=flux[:-1])
 
         np.subtract(h[:-1], h[1:], out=exchange[:-1])
-        exchange -= fold.s
-        exchange *= fold.k
+        exchange -= fold.repose_drop
+        exchange *= fold.exchange
         exchange *= R
 
         if ends == "periodic":
             flux[-1] -= b * R[0]
-            exchange[-1] = R[-1] * (fold.k * ((h[-1] - (h[0] - drop)) - fold.s))
+            exchange[-1] = R[-1] * (fold.exchange * ((h[-1] - (h[0] - drop)) - fold.repose_drop))
             entering = flux[-1]
         else:
-            flux[-1] = fold.c * R[-1]
+            flux[-1] = fold.courant * R[-1]
             exchange[-1] = 0.0
             entering = 0.0
 

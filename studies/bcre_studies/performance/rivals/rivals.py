@@ -47,8 +47,10 @@ def start(problem: Problem, x: Array) -> tuple[Array, Array]:
     Raises
     ------
     ValueError
-        for the saturated exchange law, which no rival is written for.
+        for thick flows, walls and sources, which no rival is written for.
     """
+    if problem.ends == "wall" or problem.sources or problem.material.Gamma:
+        raise ValueError("walls, sources and Gamma: must be absent, no rival has them")
     if math.isfinite(problem.material.v_up):
         raise ValueError(f"v_up = {problem.material.v_up!r}: must be infinite, the linear law")
     h, R = problem.initial(x)

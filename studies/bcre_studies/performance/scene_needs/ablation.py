@@ -31,18 +31,16 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import Any
 
-import numba
 import numpy as np
 
 import bcre_ca
-from bcre_ca.kernels.driver import BLOCK, SEES
 from bcre_ca.rule import Ends, Scheme
-from bcre_studies.models.height_only import settled
-from bcre_studies.models.simulate import frame_times, rule_of
-from bcre_studies.observables.named import Record
+from bcre_studies.models.automaton import rule_of, run_of
+from bcre_studies.models.registry import HEIGHT_ONLY
+from bcre_studies.models.run import Run, frame_times
 from bcre_studies.performance.record import specialisation
 from bcre_studies.scenes.domain import Array
-from bcre_studies.scenes.scene import Scene
+from bcre_studies.scenes.scene import Scene, SceneError
 from bcre_studies.timing import costs
 
 D, V, GAMMA, KAPPA = "D", "v", "gamma", "kappa"
@@ -87,13 +85,13 @@ class Model:
 class Trial:
     """A run of a model, with the number of cells stepped and its cost in those of the full one."""
 
-    record: Record
+    record: Run
     cell_steps: float
     cost: float
 
 
 class Refused(ArithmeticError):  # noqa: N818 - named for what happened
-    """The model cannot be run: its step is not stable."""
+    """The model cannot be run: its step is not stable, or its cells do not hold the start."""
 
 
 def run(scene: Scene, model: Model) -> Trial:
@@ -102,7 +100,7 @@ def run(scene: Scene, model: Model) -> Trial:
     Raises
     ------
     Refused
-        where the step is not stable, at the start or later.
+        where the step is not stable, at the start or later, or the cells do not hold the start.
     """
     if LAYER in model.without:
         return _of_height_alone(scene)
@@ -110,7 +108,7 @@ def run(scene: Scene, model: Model) -> Trial:
         if NONLINEARITY in model.without:
             return _on_frozen_slope(scene, model)
         return _stepped(scene, model)
-    except (bcre_ca.UnstableStep, FloatingPointError) as failure:
+    except (bcre_ca.UnstableStep, FloatingPointError, SceneError) as failure:
         raise Refused(str(failure)) from None
 
 
@@ -149,42 +147,64 @@ def _stepped(scene: Scene, model: Model) -> Trial:
         else bcre_ca.frames(start, rule, times, ends, changed.time.step)
     )
     steps = sum(
-        (after.steps - before.steps) * _stepped_cells(before.R) for before, after in pairwise(piles)
+        (after.steps - before.steps) * bcre_ca.stepped_cells(before.R)
+        for before, after in pairwise(piles)
     )
-    return Trial(_record(scene, changed, piles), steps, steps * _cost(changed, rule, single))
+    return Trial(run_of(changed, piles), steps, steps * _cost(changed, rule, single))
 
 
 def recorded_times(scene: Scene) -> list[float]:
-    """About :data:`FRAMES` times from 0 to the end, on whole steps where the scene has a fixed one.
-
-    A frame between two steps would be reached by a shorter one, which diffuses more.
-    """
-    times, step = frame_times(scene, FRAMES), scene.time.step
-    if step == "auto":
-        return times
-    return sorted({round(time / step) * step for time in times[:-1]} | {times[-1]})
+    """:data:`FRAMES` times from 0 to the end."""
+    return frame_times(scene, FRAMES)
 
 
 def _in_single_precision(
     pile: bcre_ca.Pile, rule: bcre_ca.Rule, times: list[float], scene: Scene
 ) -> Iterator[bcre_ca.Pile]:
     """:func:`bcre_ca.frames` in single precision: the same steps, as long as rounding lets them."""
-    ends, fixed = scene.domain.ends, scene.time.step != "auto"
-    h, R = _single(pile.h), _single(pile.R)
+    ends, fixed, block = scene.domain.ends, scene.time.step != "auto", bcre_ca.BLOCK
+    t, steps, dt = pile.t, pile.steps, 0.0
+    layers = after = _single(pile.h), _single(pile.R)
     for time in times:
-        steps, left = pile.steps, time - pile.t
-        while left > 1e-9 * time and R.any():
-            wanted = rule.dt if fixed else bcre_ca.MARGIN * _bound(h, R, rule, ends)
-            block = max(math.ceil(left / wanted * (1 - 1e-9)), 1)
-            if block > BLOCK:
-                block, dt = BLOCK, wanted
-            else:
-                dt = left / block
-            h, R, dt = _shortened(h, R, replace(rule, dt=dt), block, ends)
-            steps += block
-            left -= block * dt
-        pile = bcre_ca.Pile(h.astype(float), R.astype(float), time, 0.0, steps)
-        yield pile
+        while time > t + block * dt * (1 + 1e-9) and after[1].any():
+            layers, t, steps = after, t + block * dt, steps + (block if dt else 0)
+            bound = math.inf if fixed else _bound(*layers, rule, ends)
+            wanted = bcre_ca.MARGIN * bound if math.isfinite(bound) else rule.dt
+            after, dt = _shortened(*layers, replace(rule, dt=wanted), block, ends)
+        if time > t + block * dt * (1 + 1e-9):
+            found, taken = after, block if dt else 0
+        else:
+            found, taken = _between_steps(layers, replace(rule, dt=dt or rule.dt), time - t, ends)
+        h, R = (layer.astype(float) for layer in found)
+        yield bcre_ca.Pile(h, R, time, 0.0, steps + taken)
+
+
+def _between_steps(
+    layers: tuple[Array, Array],
+    rule: bcre_ca.Rule,
+    since: float,
+    ends: Ends,
+    frozen: Array | None = None,
+) -> tuple[tuple[Array, Array], int]:
+    """The layers after a time, linear between two steps, and how many steps reach it."""
+    steps = math.floor(since / rule.dt + 1e-9)
+    share = since / rule.dt - steps
+    before = _taken(layers, rule, steps, ends, frozen)
+    if share <= 1e-9:
+        return before, steps
+    after = _taken(before, rule, 1, ends, frozen)
+    h, R = ((1 - share) * a + share * b for a, b in zip(before, after, strict=True))
+    return (h, R), steps + 1
+
+
+def _taken(
+    layers: tuple[Array, Array], rule: bcre_ca.Rule, steps: int, ends: Ends, frozen: Array | None
+) -> tuple[Array, Array]:
+    if frozen is not None:
+        return bcre_ca.evolve(*layers, rule, steps, ends, frozen)
+    h, R = (layer.copy() for layer in layers)
+    bcre_ca.march(h, R, rule, steps, ends)
+    return h, R
 
 
 def _single(layer: Array) -> Any:
@@ -198,11 +218,11 @@ def _bound(h: Array, R: Array, rule: bcre_ca.Rule, ends: Ends) -> float:
 
 def _shortened(
     h: Array, R: Array, rule: bcre_ca.Rule, steps: int, ends: Ends
-) -> tuple[Array, Array, float]:
+) -> tuple[tuple[Array, Array], float]:
     """A block of steps, in steps of half the length for as long as they are outgrown; their dt."""
     for _ in range(MOST_HALVINGS):
         try:
-            return *bcre_ca.evolve(h, R, rule, steps, ends), rule.dt
+            return bcre_ca.evolve(h, R, rule, steps, ends), rule.dt
         except (bcre_ca.UnstableStep, FloatingPointError):
             rule = replace(rule, dt=rule.dt / 2)
     raise Refused("no step is short enough in single precision")
@@ -214,76 +234,35 @@ def _on_frozen_slope(scene: Scene, model: Model) -> Trial:
     if changed.automaton.scheme != "upwind":
         raise Refused("the frozen slope stands for the upwind rule only")
     h, R = changed.initial(changed.centres())
-    periodic = changed.domain.ends == "periodic"
-    rule = rule_of(changed)
-    pile = bcre_ca.Pile(h, np.zeros_like(R))  # without a layer no surface wave bounds the step
-    bound = bcre_ca.largest_stable_step(pile, rule, changed.domain.ends)
+    rule, ends = rule_of(changed), changed.domain.ends
     if changed.time.step == "auto":
+        # Without a layer no surface wave bounds the step.
+        bound = bcre_ca.largest_stable_step(bcre_ca.Pile(h, np.zeros_like(R)), rule, ends)
         rule = replace(rule, dt=min(bcre_ca.MARGIN * bound, changed.time.until))
-    rule.require_within(bound, 0.0)
-    K = rule.coefficients()
-    drop = h - np.append(h[1:], h[0] - rule.Sc * changed.domain.length if periodic else h[-1] - K.s)
     piles = [bcre_ca.Pile(h, R)]
-    cell_steps = 0.0
+    state: tuple[Array, Array] = (h, R)
+    taken = 0
     for time in recorded_times(scene)[1:]:
-        before = piles[-1]
-        steps = math.ceil((time - before.t) / rule.dt * (1 - 1e-9))
-        K = replace(rule, dt=(time - before.t) / steps).coefficients()
-        cell_steps += steps * before.R.size
-        h, R = before.h.copy(), before.R.copy()
-        frozen_march(h, R, drop - K.s, K.c, K.b or 0.0, K.k, steps, periodic)
-        piles.append(bcre_ca.Pile(h, R, time, 0.0, before.steps + steps))
-    record = _record(scene, changed, piles)
-    return Trial(record, cell_steps, cell_steps * _cost(changed, rule, single=False))
-
-
-@numba.njit(cache=True, error_model="numpy")
-def frozen_march(h, R, drop, c, b, k, steps, periodic):  # type: ignore[no-untyped-def]
-    """The synchronous upwind rule in place, its exchange R k drop with a drop that stays."""
-    last = h.size - 1
-    for _ in range(steps):
-        first = R[0]
-        flux_in = (c + b) * R[last] - b * first if periodic else 0.0
-        for i in range(h.size):
-            if i < last:
-                flux_out = (c + b) * R[i] - b * R[i + 1]
-            else:
-                flux_out = (c + b) * R[i] - b * first if periodic else c * R[i]
-            exchange = R[i] * (k * drop[i])
-            h[i] -= exchange
-            R[i] += (flux_in - flux_out) + exchange
-            flux_in = flux_out
+        whole = math.floor(time / rule.dt + 1e-9)
+        state = bcre_ca.evolve(*state, rule, whole - taken, ends, frozen=h)
+        taken = whole
+        layers, steps = _between_steps(state, rule, time - taken * rule.dt, ends, frozen=h)
+        piles.append(bcre_ca.Pile(*layers, time, 0.0, taken + steps))
+    cell_steps = float(piles[-1].steps * R.size)
+    cost = cell_steps * _cost(changed, rule, single=False)
+    return Trial(run_of(changed, piles), cell_steps, cost)
 
 
 def _of_height_alone(scene: Scene) -> Trial:
     """R on h, settled; what a step of its cells takes counts as in the full model."""
-    x = scene.centres()
-    h, R = scene.initial(x)
-    end, steps = settled(h + R, scene.material.Sc * scene.d, scene.domain.ends == "periodic")
-    t = np.array([0.0, scene.time.until])
-    cell_steps = float(steps * x.size)
-    return Trial(Record(scene, x, t, np.array([h + R, end]), None), cell_steps, cell_steps)
-
-
-def _record(scene: Scene, changed: Scene, piles: list[bcre_ca.Pile]) -> Record:
-    h, R = (np.array([getattr(pile, name) for pile in piles]) for name in ("h", "R"))
-    return Record(scene, changed.centres(), np.array([pile.t for pile in piles]), h, R)
-
-
-def _stepped_cells(R: Array) -> int:
-    """Cells that a block of steps from R passes: the wet ones and as many about as it can reach."""
-    wet = np.flatnonzero(R)
-    if wet.size == 0:
-        return 0
-    around = BLOCK + SEES
-    return int(min(wet[-1] + 1 + around, R.size) - max(wet[0] - around, 0))
+    run = HEIGHT_ONLY.run(scene, [0.0, scene.time.until])
+    cell_steps = float(run.steps * run.x.size)
+    return Trial(run, cell_steps, cell_steps)
 
 
 def _cost(scene: Scene, rule: bcre_ca.Rule, single: bool) -> float:
     """What a step of a cell costs in units of the upwind rule without closures, same cells."""
     record = _costs()
-    if record is None:
-        return 1.0
     closures = costs.closures_of(scene) if scene.automaton.scheme != "upwind" else "none"
     cells = scene.domain.cells
     own, plain = (
@@ -296,19 +275,13 @@ def _cost(scene: Scene, rule: bcre_ca.Rule, single: bool) -> float:
 
 
 @lru_cache(maxsize=1)
-def _costs() -> costs.Costs | None:
-    try:
-        return costs.recorded()
-    except OSError:
-        return None
+def _costs() -> costs.Costs:
+    return costs.recorded()
 
 
 @lru_cache
 def _ratio(term: str) -> float:
     """The recorded gain of leaving a term out, on the fewer cells."""
-    try:
-        table = specialisation.recorded()
-    except OSError:
-        return 1.0
+    table = specialisation.recorded()
     rows = table[table["term"] == term]
     return float(rows.loc[rows["cells"].idxmin(), "ratio"]) if len(rows) else 1.0

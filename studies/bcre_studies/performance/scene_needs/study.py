@@ -32,8 +32,10 @@ import numpy as np
 import pandas as pd
 from matplotlib.colors import BoundaryNorm, ListedColormap
 
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.claim import Claim, quality_check
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.comparison.wording import sentences, when
 from bcre_studies.observables.named import NAMES, posed, scale, value
 from bcre_studies.performance.record import specialisation
 from bcre_studies.performance.scene_needs.ablation import (
@@ -56,15 +58,14 @@ from bcre_studies.performance.scene_needs.smallest import (
     without,
 )
 from bcre_studies.reporting import style
-from bcre_studies.scenes.listing import built_in_names
+from bcre_studies.scenes.listing import studied_names
 from bcre_studies.scenes.scene import load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-READS_RECORD = True
 TOLERANCES = {"1": 0.01, "5": 0.05}
 WHY = (
     "1 % is about what a measurement of a pile can tell, 5 % the width of a line in the paper's "
@@ -79,7 +80,7 @@ Row = dict[str, Any]
 
 def run() -> dict[str, pd.DataFrame]:
     """The comparison, and a table per scene."""
-    names = built_in_names()
+    names = studied_names()
     found = each(needs_of, names, "scene_needs")
     comparison = [row for rows, _ in found for row in rows]
     tables = {name: pd.DataFrame(rows) for name, (_, rows) in zip(names, found, strict=True)}
@@ -176,7 +177,7 @@ def _needed_claim(scenes: dict[str, pd.DataFrame], ingredient: str) -> Claim:
         for scene, names in by_scene.items()
     )
     largest = changes[0][0] if changes else 0.0
-    return Claim(
+    return quality_check(
         name=f"{ingredient} is needed",
         statement=f"Some built-in scene needs {_called(ingredient)}: left out, it changes an "
         "observable by more than 5 %.",
@@ -200,7 +201,7 @@ def _stability_claim(scenes: dict[str, pd.DataFrame]) -> Claim:
         for scene, table in scenes.items()
     }
     allowed = [scene for scene, runs in rows.items() if runs == "yes"]
-    return Claim(
+    return quality_check(
         name="the step is needed for stability",
         statement="No built-in scene can be run with steps twice as long.",
         verdict=Verdict.DISAGREE if allowed else Verdict.AGREE,
@@ -217,7 +218,7 @@ def _harmless_claim(scenes: dict[str, pd.DataFrame], ingredient: str) -> Claim:
     costs = [float(row["cost"]) for row in rows if row["runs"] == "yes"]
     refused = len(rows) - len(costs)
     harmless = changed <= TOLERANCES["1"] and not refused
-    return Claim(
+    return quality_check(
         name=f"{ingredient} left out",
         statement={
             DOUBLE: "Single precision is enough for every observable of every scene.",
@@ -239,13 +240,17 @@ def _together_claim(table: pd.DataFrame) -> Claim:
         if not row[f"together_{percent}"] <= tolerance
     ]
     cases = len(table) * len(TOLERANCES)
-    return Claim(
+    return quality_check(
         name="left out together",
         statement="What can be left out one by one can be left out together.",
         verdict=Verdict.DISAGREE if broken else Verdict.AGREE,
-        evidence=f"{cases - len(broken)} of {cases} combinations hold; not those of "
-        f"{'; '.join(broken) or 'none'}, where ingredients matter only together and have been put "
-        "back",
+        evidence=sentences(
+            f"{cases - len(broken)} of {cases} combinations hold",
+            when(
+                broken,
+                f"ingredients matter only together, and have been put back, in {'; '.join(broken)}",
+            ),
+        ),
         tolerance=WHY,
     )
 
@@ -254,7 +259,7 @@ def _smaller_claim(table: pd.DataFrame, percent: str) -> Claim:
     cost, changed = table[f"cost_{percent}"], table[f"change_{percent}"]
     holds = bool((changed <= TOLERANCES[percent]).all())
     least, most = table.loc[cost.idxmin()], table.loc[cost.idxmax()]
-    return Claim(
+    return quality_check(
         name=f"smallest models within {percent} %",
         statement=f"For every observable of every scene a cheaper model gives it within {percent} "
         "%.",
@@ -271,17 +276,14 @@ def _specialised_claim() -> Claim:
     statement = "Leaving an absent D, kappa, v_up or cut-off out of the compiled code saves time."
     tolerance = "a ratio above 1 for each term and number of cells of the recorded measurement"
     name = "specialised kernels"
-    try:
-        table = specialisation.recorded()
-    except OSError:
-        return Claim(name, statement, Verdict.UNRESOLVED, "there is no record", tolerance)
+    table = specialisation.recorded()
     ratios = "; ".join(
         f"{term} " + ", ".join(f"{row.ratio:g} ({row.cells:g} cells)" for row in rows.itertuples())
         for term, rows in table.groupby("term", sort=False)
     )
     own = table[table["term"].isin(specialisation.TERMS)]
     gains = len(own) > 0 and bool((own["ratio"] > 1).all())
-    return Claim(
+    return quality_check(
         name,
         statement,
         Verdict.AGREE if gains else Verdict.DISAGREE,

@@ -25,186 +25,75 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-import bcre_ca.theory
-import bcre_pde
-import bcre_pde.theory
-from bcre_studies.comparison.claim import Claim, Verdict, worst
-from bcre_studies.comparison.compare import SHARE
-from bcre_studies.comparison.measured import Measured, numbers, shown
-from bcre_studies.models.simulate import effective_problem_of, problem_of, run_automaton
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.compare import compare_each
+from bcre_studies.comparison.verdict import Verdict, worst
+from bcre_studies.comparison.wording import joined, sentences, when
+from bcre_studies.models.registry import AUTOMATON, BCRE, COMPARED
 from bcre_studies.observables.outcome import slope, spent
 from bcre_studies.reporting import style
-from bcre_studies.scenes.scene import Scene, load
-from bcre_studies.sweeps.each import each
-from bcre_studies.validation.repose_return.repeated_pulses import (
+from bcre_studies.sweeps.parallel import each
+from bcre_studies.validation.repose_return import repeated_pulses
+from bcre_studies.validation.repose_return.pulses import (
+    AT_REPOSE,
+    AT_REPOSE_WHY,
+    FAST,
+    GRIDS,
+    REPEATED,
+    SETTINGS,
+    SLOW,
     SOLVER_TOLERANCE,
-    slopes_of_automaton,
-    slopes_of_pde,
+    TOLERANCE,
+    WHY,
+    head,
+    scene_of,
 )
-from bcre_studies.validation.repose_return.thin_pulse import slope_after_thin_pulse
+from bcre_studies.validation.repose_return.thin_pulse import (
+    closed_form,
+    second_critical,
+    slope_after_thin_pulse,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-TOLERANCE = 0.02
-WHY = "0.01 in the slope, half a degree: as near as an angle of repose is measured"
-AT_REPOSE = 0.001
-AT_REPOSE_WHY = "S = Sc to three digits"
-THIN = 0.1
-"""A pulse is thin where the closed form changes S - Sc by less than this part of it, and its
-surface wave is slower than this part of v."""
 CLOSE = 0.3
 """|S0 - Sc| up to which a slope counts as close to repose: about 12 degrees above Sc = 0.5."""
 
-SLOW, FAST, REPEATED = "slow", "fast", "repeated"
-SETTINGS = {SLOW: ("figure1", 3000.0, 15.0), FAST: ("pulse_at_repose", 60.0, 20.0)}
-"""Scene, time to leave, and place of the pulse, near the top."""
+COLUMNS = [AUTOMATON.column, BCRE.column]
 SLOW_EXCESSES = (-0.3, -0.02, 0.02, 0.1, 0.3, 0.6, 1.0, 2.1, 3.2)
 SLOW_PULSES = (0.1, 1.0, 10.0)
 FAST_EXCESSES = (-0.3, -0.02, 0.0, 0.02, 0.3, 3.0)
 FAST_PULSES = (1.0, 10.0)
-SEQUENCES = ((-0.3, 10.0), (0.1, 10.0), (0.3, 1.0))
-"""S0 - Sc and amplitude of the repeated pulses."""
-RELEASES = 15
-SHOWN = (1, 5, 10, 15)
-GRIDS = (40, 80, 160)
-
-
-def scene_of(kind: str, excess: float, pulse: float) -> Scene:
-    """Figure 1's or figure 2's material with a pulse near the top, until it has left."""
-    name, until, centre = SETTINGS[kind]
-    scene = load(name)
-    return scene.with_changes(
-        **{"until": until, "surface.0.slope": scene.material.Sc + excess},
-        **{"rolling.0.amplitude": pulse, "rolling.0.centre": centre},
-    )
-
-
-def effective_of(scene: Scene) -> bcre_pde.Problem:
-    """BCRE with what the automaton has at the paper's d = 1; dt = 1, or 0.2 where v is 2.5."""
-    step = 1.0 if scene.time.step == "auto" else scene.time.step
-    return effective_problem_of(scene.with_changes(step=step))
 
 
 def run() -> dict[str, pd.DataFrame]:
     """One pulse, then many."""
     slow = [(SLOW, excess, pulse) for excess in SLOW_EXCESSES for pulse in SLOW_PULSES]
     fast = [(FAST, excess, pulse) for excess in FAST_EXCESSES for pulse in FAST_PULSES]
-    many = [(REPEATED, excess, pulse) for excess, pulse in SEQUENCES]
-    results = each(_case, many + slow + fast, "repose_return")
-    repeated, single = results[: len(many)], results[len(many) :]
-    rows = [row for rows, _ in single + repeated for row in rows]
-    return {
-        "comparison": pd.DataFrame(rows),
-        "repeated": pd.DataFrame([point for _, points in repeated for point in points]),
-    }
+    rows, points = repeated_pulses.run()
+    once = each(single, slow + fast, "repose_return")
+    return {"comparison": pd.DataFrame(once + rows), "repeated": points}
 
 
-Rows = list[dict[str, Any]]
-
-
-def _case(case: tuple[str, float, float]) -> tuple[Rows, Rows]:
-    kind, excess, pulse = case
-    if kind == REPEATED:
-        return repeated(excess, pulse)
-    return [single(kind, excess, pulse)], []
-
-
-def single(kind: str, excess: float, pulse: float) -> dict[str, Any]:
+def single(case: tuple[str, float, float]) -> dict[str, Any]:
     """S - Sc after one pulse, in both models."""
-    scene = scene_of(kind, excess, pulse)
+    scene = scene_of(*case)
     Sc = scene.material.Sc
-    times = [float(t) for t in np.linspace(0.0, scene.time.until, 31)]
-    end = run_automaton(scene, times, spent)
-    automaton = slope(end.x, end.h[-1]) - Sc
-
-    def refined(problem: bcre_pde.Problem) -> Measured:
-        found = bcre_pde.solve_refined(
-            problem,
-            times,
-            lambda solution: slope(solution.x, solution.h[-1]) - Sc,
-            lambda value: SHARE * max(abs(value - automaton), TOLERANCE * Sc),
-            coarsest=GRIDS[0],
-            finest=GRIDS[-1],
-            tolerance=SOLVER_TOLERANCE,
-            stop=spent,
-        )
-        return Measured(found.measured, found.error)
-
-    row = numbers(
-        automaton, refined(problem_of(scene)), refined(effective_of(scene)), TOLERANCE, Sc
+    (result,) = compare_each(
+        scene,
+        [float(t) for t in np.linspace(0.0, scene.time.until, 31)],
+        lambda run: [slope(run.x, run.h[-1]) - Sc],
+        [Sc],
+        TOLERANCE,
+        coarsest=GRIDS[0],
+        finest=GRIDS[-1],
+        tolerance=SOLVER_TOLERANCE,
+        stop=spent,
     )
-    return {
-        **_head(kind, excess, pulse, 1),
-        **row,
-        "automaton_theory": closed_form(scene, scene.d),
-        "pde_theory": closed_form(scene, 0.0),
-    }
-
-
-def repeated(excess: float, pulse: float) -> tuple[Rows, Rows]:
-    """S - Sc after each of many pulses: rows for some of them, points of the figure for all."""
-    scene = scene_of(SLOW, excess, pulse).with_changes(until=1000.0)
-    Sc = scene.material.Sc
-    automaton = np.array(slopes_of_automaton(scene, RELEASES)) - Sc
-    on_grids = {
-        model: [np.array(slopes_of_pde(scene, problem, cells, RELEASES)) - Sc for cells in GRIDS]
-        for model, problem in (("pde", problem_of(scene)), ("pde effective", effective_of(scene)))
-    }
-    points = [
-        {"S0 - Sc": excess, "pulse": pulse, "pulses": n + 1, "model": model, "S - Sc": values[n]}
-        for model, values in [("ca", automaton)] + [(m, v[-1]) for m, v in on_grids.items()]
-        for n in range(RELEASES)
-    ]
-    rows = []
-    for n in SHOWN:
-        after = {
-            model: _finest(*(float(values[n - 1]) for values in grids))
-            for model, grids in on_grids.items()
-        }
-        row = numbers(float(automaton[n - 1]), after["pde"], after["pde effective"], TOLERANCE, Sc)
-        rows.append({**_head(REPEATED, excess, pulse, n), **row})
-    return rows, points
-
-
-def _finest(coarse: float, medium: float, fine: float) -> Measured:
-    return Measured(fine, bcre_pde.grid_convergence_index(fine, medium, coarse).error)
-
-
-def closed_form(scene: Scene, d: float) -> float:
-    """S - Sc: 0 above Sd, the thin pulse's below it where the pulse is thin, else not a number."""
-    v, D, gamma = scene.material.v, scene.material.D, scene.material.gamma
-    if d > 0:
-        limit = bcre_ca.theory.second_critical_excess(v, D, gamma, d)
-    else:
-        limit = bcre_pde.theory.second_critical_slope(v, D, gamma, 0.0)
-    excess = slope_at_start(scene)
-    if excess > limit:
-        return 0.0
-    after = slope_after_thin_pulse(scene, d)
-    _, R = scene.initial(scene.centres())
-    thin = gamma * R.max() <= THIN * v
-    return shown(after, 1e-5) if thin and abs(after - excess) <= THIN * abs(excess) else np.nan
-
-
-def slope_at_start(scene: Scene) -> float:
-    """S0 - Sc."""
-    h, _ = scene.initial(scene.centres())
-    return slope(scene.centres(), h) - scene.material.Sc
-
-
-def _head(kind: str, excess: float, pulse: float, pulses: int) -> dict[str, Any]:
-    return {
-        "quantity": "final S - Sc",
-        "case": kind,
-        "S0 - Sc": excess,
-        "pulse": pulse,
-        "pulses": pulses,
-    }
-
-
-MODELS = {"ca": "automaton", "pde": "pde", "pde effective": "pde_effective"}
+    theories = [closed_form(scene, second_critical(case[0], d), d) for d in (scene.d, 0.0)]
+    return {**head(*case, 1), **result.row(*theories)}
 
 
 def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
@@ -213,116 +102,99 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     once, many = table[table["case"] != REPEATED], table[table["case"] == REPEATED]
     return [
         _printed_claim(once),
-        _all_or_nothing_claim(once),
+        _all_or_nothing_claim(once[once["S0 - Sc"] > 0]),
         _one_pulse_claim(once),
-        _repeated_claim(many, tables["repeated"]),
+        repeated_pulses.claim(many, tables["repeated"]),
     ]
 
 
 def _printed_claim(rows: pd.DataFrame) -> Claim:
     close = rows[rows["S0 - Sc"].abs() <= CLOSE]
     below, above = close[close["S0 - Sc"] <= 0], close[close["S0 - Sc"] > 0]
-    figure2 = _row(rows, FAST, -0.02, 1.0)
-    steepest = above.loc[(above["automaton"] - above["S0 - Sc"]).idxmax()]
-    holds = (above[["automaton", "pde"]] <= AT_REPOSE).to_numpy().all()
+    returned = above[COLUMNS] <= AT_REPOSE
+    steepest = above.loc[(above.automaton - above["S0 - Sc"]).idxmax()]
+    highest = below[COLUMNS].to_numpy().max()
+    far = rows[(rows["S0 - Sc"] > CLOSE) & (rows[COLUMNS].abs() <= AT_REPOSE).all(axis=1)]
     return Claim(
         "first property as printed",
         "A slope close to repose, perturbed locally, returns to an angle below the critical one.",
-        Verdict.AGREE if holds else Verdict.DISAGREE,
-        f"in neither model: of {len(above)} pulses on slopes up to {CLOSE:g} above Sc "
-        f"{_count(above['automaton'] <= AT_REPOSE)} returned in the automaton and "
-        f"{_count(above['pde'] <= AT_REPOSE)} in BCRE; the slope stays or steepens (S0 - Sc = "
-        f"{steepest['S0 - Sc']:g}, pulse {steepest['pulse']:g}: {steepest['automaton']:.3g} and "
-        f"{steepest['pde']:.3g}). On the {len(below)} at or below Sc the pulse is laid down and S "
-        f"stays there, S - Sc at most {below[['automaton', 'pde']].to_numpy().max():g}, as in "
-        f"figure 2 ({figure2['automaton']:g} and {figure2['pde']:g} from {figure2['S0 - Sc']:g}), "
-        "where there is nothing to return from. It is true where the avalanche runs to the top: "
-        "above Sd, for a thick enough pulse, or after enough pulses; and then S = Sc, not less",
+        Verdict.AGREE if returned.to_numpy().all() else Verdict.DISAGREE,
+        sentences(
+            f"of {len(above)} pulses on slopes up to {CLOSE:g} above Sc "
+            f"{_count(returned.automaton)} returned in the automaton and {_count(returned.pde)} in "
+            f"BCRE; the largest change is at S0 - Sc = {steepest['S0 - Sc']:g} with pulse "
+            f"{steepest['pulse']:g}, to {steepest.automaton:.3g} and {steepest.pde:.3g}",
+            f"{len(below)} pulses on slopes at or below Sc, figure 2 among them, end at S - Sc = "
+            f"{highest:g} at most",
+            when(highest <= AT_REPOSE, "they are laid down, and there is nothing to return from"),
+            when(
+                len(far),
+                f"steeper slopes come to S = Sc, not to less, in {len(far)} cases, from S0 - Sc = "
+                f"{far['S0 - Sc'].min():g} on",
+            ),
+        ),
         f"{AT_REPOSE:g} above Sc: {AT_REPOSE_WHY}",
     )
 
 
-def _all_or_nothing_claim(rows: pd.DataFrame) -> Claim:
-    above = rows[rows["S0 - Sc"] > 0]
+def _all_or_nothing_claim(above: pd.DataFrame) -> Claim:
     start = above["S0 - Sc"]
-    returned = {model: above[model].abs() <= AT_REPOSE for model in ("automaton", "pde")}
-    # The slope may be this little short of S0: nothing that a returning slope could be taken for.
-    kept = {model: above[model] >= start - AT_REPOSE for model in returned}
-    holds = all((returned[model] | kept[model]).all() for model in returned)
-    surely = start[returned["automaton"] & returned["pde"]]
+    limits = {
+        column: above["case"].map({kind: second_critical(kind, d) for kind in SETTINGS})
+        for column, d in zip(COLUMNS, (1.0, 0.0), strict=True)
+    }
+    returned, kept = above[COLUMNS].abs() <= AT_REPOSE, {}
+    for column, limit in limits.items():
+        kept[column] = (above[column] >= start - AT_REPOSE) & (above[column] < limit)
+    most = above.loc[(above[COLUMNS].max(axis=1) - start).idxmax()]
+    scene = scene_of(most["case"], most["S0 - Sc"], most["pulse"])
+    thin = [slope_after_thin_pulse(scene, d) for d in (1.0, 0.0)]
+    in_both = start[returned.all(axis=1)]
     return Claim(
         "all or nothing",
-        "One pulse above repose leaves the slope as steep as it was, or brings it to S = Sc.",
-        Verdict.AGREE if holds else Verdict.DISAGREE,
-        f"of {len(above)} cases the slope came to Sc in {_count(returned['automaton'])} in the "
-        f"automaton and {_count(returned['pde'])} in BCRE, and was kept or steepened in all "
-        f"others; in both models it came down from S0 - Sc = {surely.min():g} on, below either "
-        "Sd, since a pulse that starts at the top has grown thick enough at the foot for its "
-        "scarp to climb back",
-        f"{AT_REPOSE:g}: {AT_REPOSE_WHY}",
+        "One pulse above repose brings the slope to S = Sc, or steepens it to less than Sd.",
+        Verdict.AGREE
+        if all((returned[column] | kept[column]).all() for column in COLUMNS)
+        else Verdict.DISAGREE,
+        sentences(
+            f"of {len(above)} cases the slope came to Sc in {_count(returned.automaton)} in the "
+            f"automaton and {_count(returned.pde)} in BCRE, in both from S0 - Sc = "
+            f"{in_both.min():g} on",
+            f"it steepened most at S0 - Sc = {most['S0 - Sc']:g} with pulse {most['pulse']:g}, "
+            f"ending at {most.automaton:.3g} in the automaton and {most.pde:.3g} in BCRE, where "
+            f"the first order in the pulse gives {thin[0]:.3g} and {thin[1]:.3g}",
+        ),
+        f"{AT_REPOSE:g}: {AT_REPOSE_WHY}. Sd bounds the steepening, as above it a trace is enough "
+        "to bring the slope down",
     )
 
 
 def _one_pulse_claim(rows: pd.DataFrame) -> Claim:
     differing = rows[rows["verdict"] != Verdict.AGREE]
-    cases = ", ".join(
-        f"{row['S0 - Sc']:g} and pulse {row['pulse']:g} ({row['automaton']:.3g} against "
-        f"{row['pde']:.3g}, effective {row['pde_effective']:.3g})"
+    only_automaton = (differing.automaton.abs() <= AT_REPOSE) & (differing.pde.abs() > AT_REPOSE)
+    gaps = [(rows[column] - rows[f"{column}_theory"]).abs().max() for column in COLUMNS]
+    cases = joined(
+        f"{row['S0 - Sc']:g} and pulse {row['pulse']:g} ({row.automaton:.3g} against "
+        f"{row.pde:.3g}, effective {row.pde_effective:.3g})"
         for _, row in differing.iterrows()
     )
-    gaps = [(rows[model] - rows[f"{model}_theory"]).abs() for model in ("automaton", "pde")]
     return Claim(
         "final slope",
         "After one pulse the automaton's slope is that of BCRE.",
         worst(rows["verdict"]),
-        f"they agree in {len(rows) - len(differing)} of {len(rows)} cases and differ at S0 - Sc = "
-        f"{cases}, near the slope from which on the avalanche climbs back, which the automaton's "
-        "v d/2 lowers. Where a closed form holds (thin pulses, and above Sd) S is within "
-        f"{max(gap.max() for gap in gaps):.1g} of it",
+        sentences(
+            f"they agree in {len(rows) - len(differing)} of {len(rows)} cases; others: S0 - Sc = "
+            f"{cases}",
+            when(
+                only_automaton.any(),
+                f"in {_count(only_automaton)} of these the avalanche climbs back in the automaton "
+                "and not in BCRE",
+            ),
+            f"where a closed form holds (thin pulses, and above Sd) S is within {max(gaps):.1g} "
+            "of it",
+        ),
         f"{TOLERANCE:.0%} of Sc: {WHY}",
     )
-
-
-def _repeated_claim(rows: pd.DataFrame, points: pd.DataFrame) -> Claim:
-    ends = []
-    for excess, pulse in SEQUENCES:
-        chosen = points[(points["S0 - Sc"] == excess) & (points["pulse"] == pulse)]
-        if excess < 0:
-            last = chosen[chosen["pulses"] == RELEASES].set_index("model")["S - Sc"]
-            ends.append(
-                f"{excess:g} rises to {last['ca']:.3g} and {last['pde']:.3g} (pulse {pulse:g})"
-            )
-        else:
-            come = chosen[chosen["S - Sc"].abs() <= AT_REPOSE].groupby("model")["pulses"].min()
-            counts = " and ".join(str(come.get(model, "none")) for model in ("ca", "pde"))
-            peak = chosen[chosen["model"] == "ca"]["S - Sc"].max()
-            ends.append(
-                f"{excess:g} steepens up to {peak:.3g} and is at Sc after {counts} pulses (pulse "
-                f"{pulse:g})"
-            )
-    unresolved = rows[rows["verdict"] == Verdict.UNRESOLVED]
-    doubt = (
-        "; with kappa = 0 the grids still disagree in the midst of the return (S0 - Sc = "
-        f"{unresolved.iloc[0]['S0 - Sc']:g} after {unresolved.iloc[0]['pulses']} pulses: "
-        f"difference {unresolved.iloc[0]['difference']:.2g}, "
-        f"{unresolved.iloc[0]['difference_effective']:.1g} with D_eff and kappa_eff)"
-        if len(unresolved)
-        else ""
-    )
-    return Claim(
-        "repeated pulses",
-        "Repeated pulses bring the slope to repose, in the automaton as in BCRE.",
-        worst(rows["verdict"]),
-        "S - Sc in the automaton and in BCRE: from "
-        + "; from ".join(ends)
-        + f". S = Sc is where both end, or what they approach{doubt}",
-        f"{TOLERANCE:.0%} of Sc: {WHY}",
-    )
-
-
-def _row(rows: pd.DataFrame, kind: str, excess: float, pulse: float) -> Any:
-    chosen = (rows["case"] == kind) & (rows["S0 - Sc"] == excess) & (rows["pulse"] == pulse)
-    return rows[chosen].iloc[0]
 
 
 def _count(holds: pd.Series) -> str:
@@ -335,19 +207,19 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
     figure, axes = style.panels(1, 3)
     _draw_final(axes[0], table[table["case"] == SLOW])
     _draw_change(axes[1], table)
-    _draw_repeated(axes[2], tables["repeated"])
-    style.legend(figure, style.MODELS, markers=True)
+    repeated_pulses.draw(axes[2], tables["repeated"])
+    style.legend(figure, COMPARED, markers=True)
     return figure
 
 
 def _draw_final(axis: Axes, rows: pd.DataFrame) -> None:
     """Pulse 0.1 hollow, 1 half filled, 10 full; the dash-dotted line is S = S0."""
     fills = dict(zip(SLOW_PULSES, ("none", "left", "full"), strict=True))
-    for (model, column), shift in zip(MODELS.items(), (-0.04, 0.0, 0.04), strict=True):
+    for model, shift in zip(COMPARED, (-0.04, 0.0, 0.04), strict=True):
         for pulse, fill in fills.items():
             chosen = rows[rows["pulse"] == pulse]
-            look = style.marker(model, fillstyle=fill, markerfacecoloralt="white", markersize=6)
-            axis.plot(chosen["S0 - Sc"] + shift, chosen[column], **look)
+            look = model.markers(fillstyle=fill, markerfacecoloralt="white", markersize=6)
+            axis.plot(chosen["S0 - Sc"] + shift, chosen[model.column], **look)
     axis.plot([-0.3, 1.1], [-0.3, 1.1], **style.START)
     axis.annotate("S = S0", (1.1, 1.1), xytext=(4, -8), textcoords="offset points", fontsize=8)
     axis.set(xlabel="initial S0 - Sc", ylabel="final S - Sc", ylim=(-0.4, 1.2))
@@ -360,32 +232,12 @@ def _draw_change(axis: Axes, table: pd.DataFrame) -> None:
     for kind in (SLOW, FAST):
         rows = table[(table["case"] == kind) & (table["pulse"] == 1.0)]
         rows = rows[rows["S0 - Sc"].abs() <= CLOSE]
-        for model, column in MODELS.items():
-            look = style.marker(model, fillstyle="none" if kind == FAST else "full", markersize=6)
-            axis.plot(rows["S0 - Sc"], rows[column] - rows["S0 - Sc"], **look)
-        for model, d in (("ca", 1.0), ("pde", 0.0)):
+        for model in COMPARED:
+            look = model.markers(fillstyle="none" if kind == FAST else "full", markersize=6)
+            axis.plot(rows["S0 - Sc"], rows[model.column] - rows["S0 - Sc"], **look)
+        for model, d in ((AUTOMATON, 1.0), (BCRE, 0.0)):
             after = [slope_after_thin_pulse(scene_of(kind, place, 1.0), d) for place in places]
-            axis.plot(places, after - places, **style.MODELS[model])
+            axis.plot(places, after - places, **model.line)
     axis.set_yscale("symlog", linthresh=1e-5)
     axis.set(xlabel="initial S0 - Sc", ylabel="change S - S0", ylim=(-5e-6, 0.05))
     axis.set_title("pulse 1, v = 0.1 full, v = 2.5 hollow; closed form", loc="left")
-
-
-def _draw_repeated(axis: Axes, points: pd.DataFrame) -> None:
-    for (_, _, model), line in points.groupby(["S0 - Sc", "pulse", "model"]):
-        look = {
-            **style.MODELS[str(model)],
-            "marker": style.MARKERS[str(model)],
-            "fillstyle": "none",
-        }
-        axis.plot(line["pulses"], line["S - Sc"], **look)
-    for excess, pulse in SEQUENCES:
-        axis.annotate(
-            f"from {excess:g}, pulse {pulse:g}",
-            (0.7, excess),
-            fontsize=8,
-            xytext=(0, -12 if excess > 0 else -14),
-            textcoords="offset points",
-        )
-    axis.set(xlabel="pulses so far", ylabel="S - Sc", ylim=(-0.38, 0.56))
-    axis.set_title("repeated pulses", loc="left")

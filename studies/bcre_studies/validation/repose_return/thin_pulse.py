@@ -15,8 +15,16 @@ import math
 
 import numpy as np
 
+import bcre_ca.theory
+import bcre_pde.theory
+from bcre_studies.comparison.rounding import shown
 from bcre_studies.observables.outcome import slope
-from bcre_studies.scenes.scene import Scene
+from bcre_studies.scenes.scene import Scene, load
+from bcre_studies.validation.repose_return.pulses import SETTINGS
+
+THIN = 0.1
+"""A pulse is thin where the closed form changes S - Sc by less than this part of it, and its
+surface wave is slower than this part of v."""
 
 
 def slope_after_thin_pulse(scene: Scene, d: float) -> float:
@@ -40,6 +48,35 @@ def slope_after_thin_pulse(scene: Scene, d: float) -> float:
     strength = _strength(material.D, downhill, uphill, d)
     passed = release / strength * np.exp(downhill * x)
     return slope(x, h - sigma * passed) - material.Sc
+
+
+def closed_form(scene: Scene, limit: float, d: float) -> float:
+    """S - Sc: 0 above Sd, the thin pulse's below it where the pulse is thin, else not a number.
+
+    ``limit`` is Sd - Sc, and d the automaton's cell length, or 0 for BCRE.
+    """
+    excess = slope_at_start(scene)
+    if excess > limit:
+        return 0.0
+    after = slope_after_thin_pulse(scene, d)
+    _, R = scene.initial(scene.centres())
+    thin = scene.material.gamma * R.max() <= THIN * scene.material.v
+    return shown(after, 1e-5) if thin and abs(after - excess) <= THIN * abs(excess) else np.nan
+
+
+def slope_at_start(scene: Scene) -> float:
+    """S0 - Sc."""
+    h, _ = scene.initial(scene.centres())
+    return slope(scene.centres(), h) - scene.material.Sc
+
+
+def second_critical(kind: str, d: float) -> float:
+    """Sd - Sc of the material: of the automaton with cells of length d, or of BCRE for d = 0."""
+    material = load(SETTINGS[kind][0]).material
+    coefficients = material.v, material.D, material.gamma
+    if d > 0:
+        return bcre_ca.theory.second_critical_excess(*coefficients, d)
+    return bcre_pde.theory.second_critical_slope(*coefficients, 0.0)
 
 
 def _roots(v: float, D: float, sigma: float, d: float) -> tuple[float, float] | None:

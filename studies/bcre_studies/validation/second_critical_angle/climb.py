@@ -1,8 +1,9 @@
 r"""Does a pulse near the foot climb to the top of figure 1's slope, and from which slope on?
 
 The scene is figure 1 (v = 0.1, D = 0.1, gamma = 0.01, Sc = 0.5, L = 100) with a pulse of any
-amplitude, width 3, at x = 85 on any incline S0, until t = 3000. The threshold of a pulse is the
-lowest S0 from which on the outcome is not ``no`` (``outcome``).
+amplitude, width 3, at x = 85 on any incline S0, until t = 3000. The step is dt = 0.2 d, which keeps
+the surface wave stable up to gamma R = 5. The threshold of a pulse is the lowest S0 at which the
+outcome is not ``no`` (``outcome``).
 """
 
 from __future__ import annotations
@@ -13,18 +14,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-import bcre_pde
-from bcre_studies.models.simulate import (
-    as_run,
-    effective_problem_of,
-    problem_of,
-    run_automaton,
-)
+from bcre_studies.models.registry import AUTOMATON, Model
 from bcre_studies.observables.outcome import Outcome, decided, outcome
 from bcre_studies.scenes.scene import Scene, load
 
 CENTRE = 85.0
 UNTIL = 3000.0
+CELLS = 100
+STEP = 0.2
+"""dt on :data:`CELLS`, in proportion to d on finer cells."""
 TIMES = [float(t) for t in np.linspace(0.0, UNTIL, 61)]
 
 SOLVER_TOLERANCE = 1e-4
@@ -40,32 +38,26 @@ def pulse_scene(excess: float, pulse: float) -> Scene:
     slope = scene.material.Sc + excess
     return scene.with_changes(
         until=UNTIL,
+        step=STEP,
         **{"surface.0.slope": slope, "rolling.0.amplitude": pulse},
-        **{"rolling.0.centre": CENTRE},
+        **{"rolling.0.centre": CENTRE, "solver.tolerance": SOLVER_TOLERANCE},
     )
 
 
-def climb(model: str, cells: int, excess: float, pulse: float) -> Outcome:
+def climb(model: Model, cells: int, excess: float, pulse: float) -> Outcome:
     """What becomes of the pulse.
 
     Parameters
     ----------
-    model: ``"ca"``, ``"pde"`` or ``"pde effective"`` (:func:`effective_problem`).
+    model: the effective one has D_eff and kappa_eff of d = 1, dt = 0.2.
     cells: the grid; 100 cells are d = 1.
     excess: S0 - Sc.
     pulse: amplitude, a length.
     """
     scene = pulse_scene(excess, pulse)
-    if model == "ca":
-        return outcome(run_automaton(scene.with_changes(cells=cells), TIMES, decided), CENTRE)
-    problem = effective_problem(scene) if model == "pde effective" else problem_of(scene)
-    solution = bcre_pde.solve(problem, TIMES, cells, tolerance=SOLVER_TOLERANCE, stop=decided)
-    return outcome(as_run(scene, solution), CENTRE)
-
-
-def effective_problem(scene: Scene) -> bcre_pde.Problem:
-    """BCRE with the automaton's D_eff = 0.145, kappa_eff = 0.005 of the paper's d = dt = 1."""
-    return effective_problem_of(scene.with_changes(cells=100, step=1.0))
+    if model is AUTOMATON:
+        scene = scene.with_changes(step=STEP * CELLS / cells)
+    return outcome(model.run(scene, TIMES, cells, decided), CENTRE)
 
 
 @dataclass(frozen=True)
@@ -86,7 +78,7 @@ class Bracket:
         return (self.high - self.low) / 2
 
 
-def threshold(model: str, grids: tuple[int, ...], pulse: float, within: Bracket) -> Bracket:
+def threshold(model: Model, grids: tuple[int, ...], pulse: float, within: Bracket) -> Bracket:
     """S0 - Sc from which on the pulse climbs: a bracket that holds on every grid.
 
     Bisected on the first grid; where it does not hold on a further one it is widened until it does.

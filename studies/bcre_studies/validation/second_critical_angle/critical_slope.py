@@ -23,7 +23,6 @@ import bcre_ca
 import bcre_pde
 from bcre_ca.theory import max_stable_step, second_critical_excess
 from bcre_pde.theory import second_critical_slope
-from bcre_studies.comparison.measured import Measured
 from bcre_studies.observables.outcome import growth_rate
 from bcre_studies.scenes.domain import Array
 
@@ -40,11 +39,11 @@ CELL_PECLET = (1.0, 0.5, 0.25)
 """Cells of the PDE's three grids, v dx/D; R varies as e^(v x/2D) about the place of release."""
 
 
-def measure_sd_automaton(material: bcre_pde.Material, d: float) -> float:
-    """Sd - Sc of the automaton with cells of length d; v, D, gamma > 0."""
+def upwind_rule(material: bcre_pde.Material, d: float) -> bcre_ca.Rule:
+    """The paper's automaton with cells of length d and the usual step; v, D, gamma > 0."""
     v, D, gamma, Sc = _positive(material)
     dt = bcre_ca.MARGIN * max_stable_step(v, D, gamma, d)
-    return measure_sd_of(bcre_ca.Rule(v, D, gamma, Sc, d, dt))
+    return bcre_ca.Rule(v, D, gamma, Sc, d, dt)
 
 
 def calibrated_rule(material: bcre_pde.Material, d: float) -> bcre_ca.Rule:
@@ -60,7 +59,7 @@ def calibrated_rule(material: bcre_pde.Material, d: float) -> bcre_ca.Rule:
     return replace(rule, dt=usual if usual > least else (least + bound) / 2)
 
 
-def measure_sd_of(rule: bcre_ca.Rule) -> float:
+def measure_sd_automaton(rule: bcre_ca.Rule) -> float:
     """Sd - Sc of an upwind or calibrated rule with diffusion left.
 
     Released in one cell. What sigma_abs leaves out is of order d^2/(16 D' t1 t2) with the weighted
@@ -84,7 +83,7 @@ def measure_sd_of(rule: bcre_ca.Rule) -> float:
     return _root(rate, expected, FOLDS / (rule.gamma * expected * late), 1e-7)
 
 
-def measure_sd_pde(material: bcre_pde.Material) -> Measured:
+def measure_sd_pde(material: bcre_pde.Material) -> bcre_pde.Measured:
     """Sd - Sc of BCRE on three grids, with the finest one's convergence index; v, D, gamma > 0.
 
     Lengths are counted in D/v and times in D/v^2, the only ones there are. Released is a Gaussian
@@ -114,17 +113,7 @@ def measure_sd_pde(material: bcre_pde.Material) -> Measured:
         return _root(rate, expected, FOLDS / (gamma * expected * times[1]), 1e-6)
 
     coarse, medium, fine = (on_grid(peclet) for peclet in CELL_PECLET)
-    return Measured(fine, bcre_pde.grid_convergence_index(fine, medium, coarse).error)
-
-
-def effective_for_growth(material: bcre_pde.Material, d: float) -> bcre_pde.Material:
-    """BCRE with the diffusion that the automaton has at Sd: D_eff = D + v d/2.
-
-    The part -v^2 dt/2 of D_eff stands for the Euler step's (dt/2) R_tt, with R_tt = v^2 R_xx of a
-    layer that is carried and does not grow. At Sd nothing changes in time at the fixed place:
-    R_tt = 0, the part falls away, and Sd does not depend on dt.
-    """
-    return replace(material, D=material.D + material.v * d / 2)
+    return bcre_pde.Measured(fine, bcre_pde.grid_convergence_index(fine, medium, coarse).error)
 
 
 def _root(rate: Callable[[float], float], start: float, spread: float, relative: float) -> float:

@@ -1,7 +1,7 @@
 """Steps that follow their bounds against a fixed step: the same R, each within its own error.
 
-The fixed step is 0.8 of the bound at the end of the scene. Steps being of first order, the error of
-a run is twice what halving all its steps changes; the two runs may differ by both errors.
+The fixed step is 0.8 of the smallest bound that the run passes. Steps being of first order, the
+error of a run is twice what halving all its steps changes; the two runs may differ by both errors.
 """
 
 from __future__ import annotations
@@ -12,13 +12,14 @@ import numpy as np
 import pandas as pd
 
 import bcre_ca
-from bcre_ca import kernels
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import relative_difference, significant
-from bcre_studies.models.simulate import rule_of
+from bcre_studies.comparison.claim import Claim, quality_check
+from bcre_studies.comparison.difference import relative_difference
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.models.automaton import rule_of
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 SCENES: dict[str, dict[str, float]] = {
     "figure1": {},
@@ -28,6 +29,9 @@ SCENES: dict[str, dict[str, float]] = {
     "climbing_wave": {},
 }
 """The built-in scene, and what is changed in it; by t = 1000 figure 1's avalanche is over."""
+
+FRAMES = 100
+"""At which the smallest bound of a run is looked for."""
 
 
 def run() -> pd.DataFrame:
@@ -40,8 +44,11 @@ def compared(name: str) -> dict[str, Any]:
     scene = load(name.partition(",")[0]).with_changes(**SCENES[name])
     start = bcre_ca.Pile(*scene.initial(scene.centres()))
     rule, ends, until = rule_of(scene), scene.domain.ends, scene.time.until
-    (auto,) = bcre_ca.frames(start, rule, [until], ends)
-    dt = bcre_ca.MARGIN * bcre_ca.largest_stable_step(auto, rule, ends)
+    times = [float(t) for t in np.linspace(0.0, until, FRAMES + 1)[1:]]
+    frames = list(bcre_ca.frames(start, rule, times, ends))
+    auto = frames[-1]
+    bounds = (bcre_ca.largest_stable_step(frame, rule, ends) for frame in frames)
+    dt = bcre_ca.MARGIN * min(bounds)
     fixed, half = (next(bcre_ca.frames(start, rule, [until], ends, step)) for step in (dt, dt / 2))
     difference = relative_difference(auto.R, fixed.R)
     fixed_error = 2 * relative_difference(half.R, fixed.R)
@@ -63,10 +70,10 @@ def compared(name: str) -> dict[str, Any]:
 
 def _at_half_the_steps(scene: Scene) -> Array:
     """R at the end where every step takes half the share of its bound."""
-    h, R = (np.array(layer) for layer in scene.initial(scene.centres()))
-    margin, blocks = bcre_ca.MARGIN / 2, 10**9
-    kernels.follow(h, R, rule_of(scene), scene.time.until, blocks, margin, scene.domain.ends)
-    return R
+    start, rule = bcre_ca.Pile(*scene.initial(scene.centres())), rule_of(scene)
+    until, ends = scene.time.until, scene.domain.ends
+    (end,) = bcre_ca.frames(start, rule, [until], ends, margin=bcre_ca.MARGIN / 2)
+    return end.R
 
 
 def claim(table: pd.DataFrame) -> Claim:
@@ -78,7 +85,7 @@ def claim(table: pd.DataFrame) -> Claim:
         for row in table.itertuples()
     )
     agrees = (table["verdict"] == str(Verdict.AGREE)).all()
-    return Claim(
+    return quality_check(
         name="steps that adapt",
         statement="A step that follows its bounds gives the R of a fixed step within the errors of "
         "the two.",

@@ -9,9 +9,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 import bcre_pde
-from bcre_pde import exact
-from bcre_pde.solve import Ends
-from bcre_studies.models.simulate import problem_of
+from bcre_pde import Ends, exact, simple_wave
+from bcre_studies.models.bcre import problem_of
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, load
 
@@ -154,6 +153,6 @@ def _level(height: float) -> Profile:
 def _steepening() -> HardScene:
     """The exact climbing wave, to twice the time at which it becomes vertical."""
     gamma, height, width = 0.5, 0.3, 1.5
-    breaking = exact.breaking_time(height / width * math.sqrt(2 / math.e), gamma)
+    breaking = simple_wave.breaking_time(gamma * height / width * math.sqrt(2 / math.e))
     wave = exact.climbing_hump(1.0, gamma, height, width, 20.0, breaking)
     return HardScene("climbing wave to twice its shock time", wave.problem, 400, 2 * breaking)

@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-import bcre_pde
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import significant
-from bcre_studies.models.simulate import as_run, problem_of, run_automaton
+from bcre_studies.comparison.claim import Claim
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.comparison.wording import sentences, when
+from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE, MODELS, Model
 from bcre_studies.observables.fronts import scarps
-from bcre_studies.reporting import style
 from bcre_studies.scenes.scene import load
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,12 +33,18 @@ TIME = 250.0
 RESOLVED = 0.01
 WHY = "1 % of max R and of the scarp's place from the last grid but one to the last"
 MEASURED = ("max_R", "place")
+SERIES = {
+    (BCRE, 0.0): (BCRE, "BCRE, kappa = 0"),
+    (BCRE, 0.005): (EFFECTIVE, "BCRE, kappa = 0.005"),
+    (AUTOMATON, 0.0): (AUTOMATON, AUTOMATON.label),
+}
+"""Model and kappa, whose look they have, and what they are called."""
 
 
 def run() -> pd.DataFrame:
     """Max R and the scarp's place on every grid, with the change from the grid before."""
-    cases = [("pde", kappa, cells) for kappa in (0.0, 0.005) for cells in CELLS]
-    cases += [("ca", 0.0, cells) for cells in CELLS_AUTOMATON]
+    cases = [(BCRE.name, kappa, cells) for kappa in (0.0, 0.005) for cells in CELLS]
+    cases += [(AUTOMATON.name, 0.0, cells) for cells in CELLS_AUTOMATON]
     # The longest first, so that no processor waits for them at the end.
     cases.sort(key=lambda case: -case[2])
     return with_changes(each(on_grid, cases, "hard_cases, scarp"))
@@ -47,14 +53,8 @@ def run() -> pd.DataFrame:
 def on_grid(case: tuple[str, float, int]) -> Row:
     """Max R and place of the scarp of figure 1 at t = 250."""
     model, kappa, cells = case
-    scene = load("figure1").with_changes(until=TIME)
-    times = [0.0, TIME]
-    if model == "ca":
-        scene = scene.with_changes(cells=cells, step=0.4 * 100 / cells)
-        run = run_automaton(scene, times)
-    else:
-        solution = bcre_pde.solve(problem_of(scene, kappa=kappa), times, cells)
-        run = as_run(scene, solution)
+    scene = load("figure1").with_changes(until=TIME, kappa=kappa, step=0.4 * 100 / cells)
+    run = MODELS[model].run(scene, [0.0, TIME], cells)
     _, places = scarps(run)
     return {
         "model": model,
@@ -68,9 +68,9 @@ def on_grid(case: tuple[str, float, int]) -> Row:
 def with_changes(rows: list[Row]) -> pd.DataFrame:
     """Grids in order, with the change from the one before; a model's last change decides."""
     table = []
-    for model, kappa in (("pde", 0.0), ("pde", 0.005), ("ca", 0.0)):
+    for model, kappa in SERIES:
         grids = sorted(
-            (row for row in rows if (row["model"], row["kappa"]) == (model, kappa)),
+            (row for row in rows if (row["model"], row["kappa"]) == (model.name, kappa)),
             key=lambda row: int(row["cells"]),
         )
         changes: list[Row] = [
@@ -86,42 +86,42 @@ def with_changes(rows: list[Row]) -> pd.DataFrame:
     return pd.DataFrame(table)
 
 
+def _of(table: pd.DataFrame, model: Model, kappa: float) -> pd.DataFrame:
+    return table[(table["model"] == model.name) & (table["kappa"] == kappa)]
+
+
 def claim(table: pd.DataFrame) -> Claim:
     """BCRE converges past the scarp with a curvature term."""
 
-    def told(model: str, kappa: float) -> str:
-        rows = table[(table["model"] == model) & (table["kappa"] == kappa)]
+    def series(model: Model, kappa: float) -> str:
+        rows = _of(table, model, kappa)
         R, place = (", ".join(f"{value:g}" for value in rows[key]) for key in ("max_R", "place"))
         return f"max R {R}, place {place} ({rows['verdict'].iloc[-1]})"
 
-    curved = table[(table["model"] == "pde") & (table["kappa"] > 0)]
+    curved = _of(table, BCRE, 0.005)
     grids = ", ".join(map(str, CELLS))
     return Claim(
         name="the scarp needs the curvature term",
         statement="Past the scarp of figure 1 BCRE converges with kappa = 0.005.",
         verdict=Verdict.AGREE if (curved["verdict"] == "resolved").all() else Verdict.DISAGREE,
-        evidence=f"at t = {TIME:g} on {grids} cells: with kappa = 0.005 "
-        f"{told('pde', 0.005)}; with kappa = 0 {told('pde', 0.0)}. The automaton, of "
-        f"kappa_eff = gamma d/2, on {', '.join(map(str, CELLS_AUTOMATON))} cells: "
-        f"{told('ca', 0.0)}: its curvature goes with the cell, and the scarp with it",
+        evidence=sentences(
+            f"at t = {TIME:g} on {grids} cells: with kappa = 0.005 {series(BCRE, 0.005)}; with "
+            f"kappa = 0 {series(BCRE, 0.0)}; the automaton, of kappa_eff = gamma d/2, on "
+            f"{', '.join(map(str, CELLS_AUTOMATON))} cells: {series(AUTOMATON, 0.0)}",
+            when(
+                (_of(table, AUTOMATON, 0.0)["verdict"] == "unresolved").all(),
+                "the automaton's curvature goes with its cell, and the scarp with it",
+            ),
+        ),
         tolerance=WHY,
     )
 
 
 def draw(axis: Axes, table: pd.DataFrame, key: str, label: str) -> None:
     """One measured quantity against cells."""
-    looks = {
-        ("pde", 0.0): {**style.MODELS["pde"], "marker": "s", "label": "BCRE, kappa = 0"},
-        ("pde", 0.005): {
-            **style.MODELS["pde effective"],
-            "marker": "^",
-            "label": "BCRE, kappa = 0.005",
-        },
-        ("ca", 0.0): {**style.MODELS["ca"], "marker": "o", "label": "automaton"},
-    }
-    for (model, kappa), look in looks.items():
-        rows = table[(table["model"] == model) & (table["kappa"] == kappa)]
-        axis.semilogx(rows["cells"], rows[key], **look)
+    for (model, kappa), (look, name) in SERIES.items():
+        rows = _of(table, model, kappa)
+        axis.semilogx(rows["cells"], rows[key], **look.marked_line | {"label": name})
     cells = sorted(set(table["cells"]))
     axis.set_xticks(cells, [str(count) for count in cells])
     axis.minorticks_off()

@@ -20,14 +20,14 @@ no solution that its grid would converge to. The table ``scarp`` refines both: m
 the scarp at t = 250 with kappa = 0 and kappa = 0.005, and the automaton, whose cell takes the
 part of the curvature term, kappa_eff = gamma d/2, so that it too depends on its grid.
 
-The tables ``scarp``, ``adaptive_step`` and ``faults`` are those of the modules ``scarp_grids``,
-``adaptive_step`` and ``faults``.
+The tables ``scarp`` and ``adaptive_step`` are those of the modules ``scarp_grids`` and
+``adaptive_step``.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, cast, get_args
 
 import numpy as np
 import pandas as pd
@@ -35,12 +35,14 @@ import pandas as pd
 import bcre_ca
 import bcre_pde
 from bcre_ca.rule import Scheme
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.claim import Claim, quality_check
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.comparison.wording import sentences, when
+from bcre_studies.models.registry import AUTOMATON, BCRE, Look
 from bcre_studies.reporting import style
-from bcre_studies.robustness import faults
 from bcre_studies.scenes.domain import Array
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 from bcre_studies.verification.hard_cases import adaptive_step, scarp_grids
 from bcre_studies.verification.hard_cases.hard_scenes import HardScene, long_run, scenes
 
@@ -48,18 +50,18 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-SCHEMES: tuple[Scheme, ...] = ("upwind", "calibrated", "limited")
+SCHEMES: tuple[Scheme, ...] = get_args(Scheme)
 MASS = 1e-12
 SURVIVES, REFUSED, FAILS = "survives", "refused before the start", "fails"
 FRAMES = 5
 LEAST_MASS_ERROR = 1e-13
-"""Below this they are not told apart: rounding differs from processor to processor."""
+"""Smaller values count as equal: rounding differs from processor to processor."""
 
 
 Row = dict[str, Any]
 
 
-class Case(NamedTuple):
+class Attempt(NamedTuple):
     """A scene in one model; ``scheme`` and ``step`` are the automaton's."""
 
     scene: str
@@ -69,22 +71,25 @@ class Case(NamedTuple):
 
 
 def run() -> dict[str, pd.DataFrame]:
-    """One row a scene and model; the scarp, grid by grid; steps that adapt; faults."""
+    """One row a scene and model; the scarp, grid by grid; steps that adapt."""
     cases = [case for scene in [*scenes().values(), long_run()] for case in _cases(scene)]
     return {
         "comparison": pd.DataFrame(each(_try, cases, "hard_cases")),
         "scarp": scarp_grids.run(),
         "adaptive_step": adaptive_step.run(),
-        "faults": faults.try_all(),
     }
 
 
-def _cases(scene: HardScene) -> list[Case]:
-    automaton = [Case(scene.name, "ca", s, step) for s in SCHEMES for step in scene.steps]
-    return automaton if scene.name == long_run().name else [*automaton, Case(scene.name, "pde")]
+def _cases(scene: HardScene) -> list[Attempt]:
+    automaton = [
+        Attempt(scene.name, AUTOMATON.name, s, step) for s in SCHEMES for step in scene.steps
+    ]
+    return (
+        automaton if scene.name == long_run().name else [*automaton, Attempt(scene.name, BCRE.name)]
+    )
 
 
-class Outcome(NamedTuple):
+class Summary(NamedTuple):
     """What is read off a run: of all frames the smallest and the largest R, of the last one h."""
 
     x: Array
@@ -95,15 +100,15 @@ class Outcome(NamedTuple):
     lowered: int = 0
 
 
-def _try(case: Case) -> Row:
-    scene = long_run() if case.scene == long_run().name else scenes()[case.scene]
-    row = {"scene": case.scene, "model": case.model}
+def _try(attempt: Attempt) -> Row:
+    scene = long_run() if attempt.scene == long_run().name else scenes()[attempt.scene]
+    row = {"scene": attempt.scene, "model": attempt.model}
     row |= {"scheme": "", "step": ""}
-    if case.model == "ca":
-        row |= {"scheme": case.scheme, "step": str(case.step)}
+    if attempt.model == AUTOMATON.name:
+        row |= {"scheme": attempt.scheme, "step": str(attempt.step)}
     try:
         with np.errstate(all="ignore"):
-            end = _automaton(scene, case) if case.model == "ca" else _pde(scene)
+            end = _automaton(scene, attempt) if attempt.model == AUTOMATON.name else _pde(scene)
     except (bcre_pde.SolveError, FloatingPointError, ValueError) as failure:
         return row | _refusal(failure)
     verdict = SURVIVES
@@ -115,7 +120,7 @@ def _try(case: Case) -> Row:
         "smallest_R": significant(_cut(end.smallest_R, end.largest_R), 1),
         "largest_R": significant(end.largest_R, 3),
         "end_slope": _slope(end),
-        "told": "",
+        "message": "",
     }
 
 
@@ -123,7 +128,7 @@ def _refusal(failure: Exception) -> Row:
     """What is known of a run without an end; the failure's text says where and by which bound."""
     before = isinstance(failure, ValueError) or getattr(failure, "time", None) == 0
     blank = dict.fromkeys(("mass_error_at_most", "smallest_R", "largest_R", "end_slope"), "")
-    return {"verdict": REFUSED if before else FAILS} | blank | {"told": str(failure)}
+    return {"verdict": REFUSED if before else FAILS} | blank | {"message": str(failure)}
 
 
 def _cut(smallest: float, largest: float) -> float:
@@ -136,7 +141,7 @@ def _decade(error: float) -> float:
     return float(f"1e{math.ceil(math.log10(max(error, LEAST_MASS_ERROR)))}")
 
 
-def _slope(end: Outcome) -> float | str:
+def _slope(end: Summary) -> float | str:
     if end.x.size < 2:
         return ""
     return round(float(-np.polyfit(end.x, end.h, 1)[0]), 3) + 0.0
@@ -148,15 +153,15 @@ def rule_for(scene: HardScene, scheme: Scheme) -> bcre_ca.Rule:
     return bcre_ca.Rule(m.v, m.D, m.gamma, m.Sc, scene.d, 1.0, scheme=scheme, kappa=m.kappa)
 
 
-def _automaton(scene: HardScene, case: Case) -> Outcome:
-    rule, x = rule_for(scene, case.scheme), scene.centres()
+def _automaton(scene: HardScene, attempt: Attempt) -> Summary:
+    rule, x = rule_for(scene, attempt.scheme), scene.centres()
     start = bcre_ca.Pile(*scene.problem.initial(x))
     times = [scene.until * (part + 1) / FRAMES for part in range(FRAMES)]
-    step = cast("Any", case.step)
+    step = cast("Any", attempt.step)
     piles = [start, *bcre_ca.frames(start, rule, times, scene.problem.ends, step)]
     end = piles[-1]
     balance = abs(end.mass(rule.d) + end.outflow - start.mass(rule.d))
-    return Outcome(
+    return Summary(
         x,
         balance / _sand(start.h, start.R, rule.d),
         min(float(pile.R.min()) for pile in piles),
@@ -170,12 +175,12 @@ def _sand(h: Array, R: Array, d: float) -> float:
     return d * float(np.abs(h).sum() + R.sum())
 
 
-def _pde(scene: HardScene) -> Outcome:
+def _pde(scene: HardScene) -> Summary:
     times = [scene.until * part / FRAMES for part in range(FRAMES + 1)]
     end = bcre_pde.solve(scene.problem, times, scene.cells)
     mass = end.mass()
     balance = abs(mass[-1] + end.outflow[-1] - mass[0])
-    return Outcome(
+    return Summary(
         end.x,
         balance / _sand(end.h[0], end.R[0], end.dx),
         float(end.R.min()),
@@ -185,7 +190,7 @@ def _pde(scene: HardScene) -> Outcome:
 
 
 def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
-    """Finite numbers, mass, failures that say where; the scarp; steps that adapt; faults."""
+    """Finite numbers, mass, failures that say where; the scarp; steps that adapt."""
     table = tables["comparison"]
     return [
         _finite(tables),
@@ -194,7 +199,6 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
         _not_negative(table),
         scarp_grids.claim(tables["scarp"]),
         adaptive_step.claim(tables["adaptive_step"]),
-        _faults(tables["faults"]),
     ]
 
 
@@ -207,7 +211,7 @@ def _finite(tables: dict[str, pd.DataFrame]) -> Claim:
     numbers = [float(cell) for cell in cells if isinstance(cell, int | float)]
     bad = sum(not math.isfinite(number) for number in numbers)
     missing = sum(cell is None for cell in cells)
-    return Claim(
+    return quality_check(
         name="finite",
         statement="No NaN or infinity in any table of this study.",
         verdict=_word(bad == 0 and missing == 0),
@@ -219,7 +223,7 @@ def _finite(tables: dict[str, pd.DataFrame]) -> Claim:
 def _mass(table: pd.DataFrame) -> Claim:
     long = table[table["scene"] == long_run().name]["mass_error_at_most"]
     known = [float(error) for error in table["mass_error_at_most"] if error != ""]
-    return Claim(
+    return quality_check(
         name="mass",
         statement=f"The mass error is at most {MASS:g} after 10^7 steps.",
         verdict=_word(len(long) and all(error != "" and float(error) <= MASS for error in long)),
@@ -232,10 +236,10 @@ def _mass(table: pd.DataFrame) -> Claim:
 def _says_where(table: pd.DataFrame) -> Claim:
     failing = table[table["verdict"] == FAILS]
     refused = table[table["verdict"] == REFUSED]
-    where = [all(part in text for part in ("t = ", "cell ", " = ")) for text in failing["told"]]
-    what = ["must" in text and " = " in text for text in refused["told"]]
+    where = [all(part in text for part in ("t = ", "cell ", " = ")) for text in failing["message"]]
+    what = ["must" in text and " = " in text for text in refused["message"]]
     survived = table["verdict"].str.startswith(SURVIVES).sum()
-    return Claim(
+    return quality_check(
         name="each failing model says where",
         statement="Each failing model says in which cell, when and by which bound, and each that "
         "refuses to start names what is not allowed.",
@@ -253,37 +257,29 @@ def _not_negative(table: pd.DataFrame) -> Claim:
     share = -negative["smallest_R"].astype(float) / negative["largest_R"].astype(float)
     most = f", at most {share.max():.1%} of the largest R" if len(negative) else ""
     scene = f" ({negative.loc[share.idxmax(), 'scene']})" if len(negative) else ""
-    automaton = int((negative["model"] == "ca").sum())
+    automaton = int((negative["model"] == AUTOMATON.name).sum())
     return Claim(
         name="R >= 0",
         statement="R stays >= 0 in both models.",
         verdict=_word(len(negative) == 0),
-        evidence=f"{automaton} runs of the automaton and {len(negative) - automaton} of BCRE have "
-        f"R < 0 somewhere{most}{scene}. The automaton's bounds keep its weights >= 0; BCRE's "
-        "differences of high order undershoot ahead of a scarp that a cell cannot resolve, and "
-        "exchange nothing there",
+        evidence=sentences(
+            f"{automaton} runs of the automaton and {len(negative) - automaton} of BCRE have R < 0 "
+            f"somewhere{most}{scene}",
+            when(
+                len(negative) > automaton,
+                "BCRE's differences of high order undershoot ahead of a scarp that a cell cannot "
+                "resolve, and exchange nothing there",
+            ),
+        ),
         tolerance="1e-12 of the largest R: rounding",
-    )
-
-
-def _faults(table: pd.DataFrame) -> Claim:
-    good = table["verdict"] == "as expected"
-    others = "" if good.all() else f"; not so: {', '.join(table.loc[~good, 'fault'])}"
-    return Claim(
-        name="faults",
-        statement="Every fault tried ended as it should.",
-        verdict=_word(good.all()),
-        evidence=f"{int(good.sum())} of {len(table)} did{others}",
-        tolerance="what should come of each stands in the table before it is tried",
     )
 
 
 def draw(tables: dict[str, pd.DataFrame]) -> Figure:
     """What came of every scene and model; the scarp on finer and finer grids."""
-    import matplotlib as mpl
     from matplotlib.figure import Figure
 
-    mpl.rcParams.update(style.RC)
+    style.use()
     figure = Figure(figsize=(11.0, 7.4), layout="constrained")
     axes = figure.subplot_mosaic([["runs", "max_R"], ["runs", "place"]], width_ratios=[1.25, 1])
     _draw_runs(axes["runs"], tables["comparison"])
@@ -295,15 +291,11 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
 
 
 COLUMNS = {
-    ("ca", "upwind", "auto"): "upwind",
-    ("ca", "calibrated", "auto"): "calibrated",
-    ("ca", "limited", "auto"): "limited",
-    ("ca", "upwind", "fixed"): "upwind, fixed",
-    ("ca", "calibrated", "fixed"): "calibrated, fixed",
-    ("ca", "limited", "fixed"): "limited, fixed",
-    ("pde", "", ""): "BCRE",
-}
-MARKS: dict[str, style.Look] = {
+    (AUTOMATON.name, scheme, step): scheme if step == "auto" else f"{scheme}, fixed"
+    for step in ("auto", "fixed")
+    for scheme in SCHEMES
+} | {(BCRE.name, "", ""): BCRE.label}
+MARKS: dict[str, Look] = {
     "survives": {"marker": "o", "color": "#3b8f5a"},
     "survives, step lowered": {"marker": "v", "color": "#c9962b"},
     REFUSED: {"marker": "s", "color": "#1f5a99", "markerfacecolor": "none"},

@@ -98,7 +98,7 @@ def _rolling(numbers: Numbers, variant: Variant, w: Wave) -> Wave:
     c, b, _ = numbers
     if variant.order == "synchronous":
         folded = rule_with(numbers, variant).coefficients()
-        return theory.amplification(c, folded.b or 0.0, 0.0, 1.0, 1.0, 1 / w)
+        return theory.amplification(c, folded.diffusion or 0.0, 0.0, 1.0, 1.0, 1 / w)
     passed_on = (c + b) / w if variant.order == "right" else b * w
     return 1 - (1 - 1 / w) * (c + b - b * w) / (1 - passed_on)
 

@@ -9,20 +9,14 @@ too, but not so far.
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Callable
 from functools import cache
-from pathlib import Path
-from typing import Any
 
-import numba
 import numpy as np
 
 import bcre_ca
-import bcre_pde
-from bcre_ca import kernels
-from bcre_pde import fluxes
-from bcre_pde.explicit import ExplicitMethod, tableau, weighted_sum
+from bcre_pde import Material
+from bcre_pde.explicit import ExplicitMethod
+from bcre_pde.fixed_step import take_fixed_steps
 from bcre_studies.scenes.domain import Array
 from bcre_studies.verification.stability.amplification import Numbers, Variant, rule_with
 
@@ -57,7 +51,7 @@ def automaton_grows(numbers: Numbers, variant: Variant) -> bool:
     h, R = u.copy(), steady + disturbance
 
     def deviation() -> float:
-        kernels.march(h, R, rule, STEPS // 2, "periodic")
+        bcre_ca.march(h, R, rule, STEPS // 2, "periodic")
         return _largest(h, R - steady)
 
     with np.errstate(all="ignore"):
@@ -71,7 +65,7 @@ def _steady_layer(rule: bcre_ca.Rule, cells: int) -> Array:
     between two sweeps, or one less: f = c/(1 - q) downhill, c/(1 - b) uphill.
     """
     folded = rule.coefficients()
-    c, b, q = folded.c, folded.b or 0.0, folded.q
+    c, b, q = folded.courant, folded.diffusion or 0.0, folded.outgoing
     layer = np.ones(cells)
     if rule.order == "right" and q < 1:
         layer[0] += c / (1 - q)
@@ -84,17 +78,17 @@ def pde_grows(numbers: Numbers, method: ExplicitMethod) -> bool:
     """Whether it grows in BCRE with fixed steps of an explicit method, dx in the place of d."""
     cells, steps = PDE
     v, D, gamma = numbers
-    a, b, _ = tableau(method)
+    material = Material(v, D, gamma, Sc=0.0)
     u, R = noise(cells)
-    layers = np.array([u, 1 + R, np.zeros(cells)])
-    march = _pde_march(_digest())
 
-    def deviation() -> float:
-        march(layers, v, D, gamma, a, b, steps // 2)
-        return _largest(layers[0], layers[1] - 1)
+    def steps_on(u: Array, R: Array) -> tuple[Array, Array]:
+        return take_fixed_steps(material, u, R, 1.0, 1.0, steps // 2, method)
 
     with np.errstate(all="ignore"):
-        return _grows(_largest(u, R), deviation(), deviation())
+        half_way = steps_on(u, 1 + R)
+        u_end, R_end = steps_on(*half_way)
+        deviation = _largest(half_way[0], half_way[1] - 1)
+        return _grows(_largest(u, R), deviation, _largest(u_end, R_end - 1))
 
 
 def _largest(u: Array, R: Array) -> float:
@@ -103,34 +97,3 @@ def _largest(u: Array, R: Array) -> float:
 
 def _grows(start: float, half_way: float, end: float) -> bool:
     return not end <= max(min(1.2 * half_way, FAR * start), 2 * start)
-
-
-@cache
-def _digest() -> str:
-    """Of the sources that the march below is compiled from; it is kept on disk under this key."""
-    folder = Path(bcre_pde.__file__).parent
-    texts = [(folder / name).read_bytes() for name in ("exchange.py", "explicit.py", "fluxes.py")]
-    return hashlib.sha256(b"".join(texts)).hexdigest()
-
-
-@cache
-def _pde_march(sources: str) -> Callable[..., Any]:
-    """:func:`bcre_pde.fixed_step.take_fixed_steps` in one call, for thousands of short marches."""
-
-    @numba.njit(cache=True, error_model="numpy")
-    def march(layers, v, D, gamma, a, b, steps):  # type: ignore[no-untyped-def]
-        sources  # noqa: B018
-        stages, cells = b.size, layers.shape[1]
-        rates, stage, new = np.empty((stages, 3, cells)), np.empty((3, cells)), np.empty((3, cells))
-        padded, faces = np.empty((2, cells + 2 * fluxes.GHOSTS)), np.empty((2, cells + 1))
-        for _ in range(steps):
-            for i in range(stages):
-                weighted_sum(layers, rates, a[i], i, 1.0, stage)
-                fluxes.rate(stage, rates[i], padded, faces, v, D, gamma, None, 1.0, True, None)
-            weighted_sum(layers, rates, b, stages, 1.0, new)
-            layers[:, :] = new
-            if not np.abs(new[1, 0]) < 1e9:
-                layers[:, :] = np.nan
-                return
-
-    return march  # type: ignore[no-any-return]

@@ -35,14 +35,15 @@ from scipy.optimize import bisect
 
 import bcre_ca
 import bcre_pde
-from bcre_ca import kernels
-from bcre_pde import theory
+from bcre_pde import Method, theory
 from bcre_pde.explicit import ExplicitMethod
-from bcre_pde.solve import Method
-from bcre_studies.comparison.claim import Claim, Verdict
-from bcre_studies.comparison.compare import significant
+from bcre_studies.comparison.claim import Claim, quality_check
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.comparison.wording import sentences, when
+from bcre_studies.models.registry import AUTOMATON, BCRE, MODELS, Look
 from bcre_studies.reporting import style
-from bcre_studies.sweeps.each import each
+from bcre_studies.sweeps.parallel import each
 from bcre_studies.verification.stability.amplification import Numbers, Variant, rule_with, stable
 from bcre_studies.verification.stability.growth import (
     PDE,
@@ -88,15 +89,15 @@ ANGLES = theory.ANGLES[::16]
 Test = Callable[[Numbers], bool]
 
 
-class Case(NamedTuple):
-    """One plane of one model: the automaton's variant or BCRE's method."""
+class Diagram(NamedTuple):
+    """A plane of steps for one model: the automaton's variant or BCRE's method."""
 
     model: str
     variant: Variant | ExplicitMethod
     plane: str
 
     def limits(self) -> tuple[float, float]:
-        if self.model == "ca":
+        if self.model == AUTOMATON.name:
             return AUTOMATON_LIMITS[self.plane]
         return (DOP853_LIMITS if self.variant == "DOP853" else PDE_LIMITS)[self.plane]
 
@@ -106,7 +107,7 @@ class Case(NamedTuple):
 
     def grows(self) -> Test:
         """Measured."""
-        if self.model == "ca":
+        if self.model == AUTOMATON.name:
             return lambda numbers: automaton_grows(numbers, cast("Variant", self.variant))
         return lambda numbers: pde_grows(numbers, cast("ExplicitMethod", self.variant))
 
@@ -116,11 +117,11 @@ class Case(NamedTuple):
 
     def no_visible_growth(self) -> Test:
         """|G| <= 10^(1/n) in the n steps that are taken: growth that they can show."""
-        steps = STEPS if self.model == "ca" else PDE[1]
+        steps = STEPS if self.model == AUTOMATON.name else PDE[1]
         return self._no_faster_than(10 ** (1 / steps) - 1)
 
     def _no_faster_than(self, growth: float) -> Test:
-        if self.model == "ca":
+        if self.model == AUTOMATON.name:
             return lambda numbers: stable(numbers, cast("Variant", self.variant), growth)
         return lambda numbers: _pde_stable(cast("ExplicitMethod", self.variant), growth, numbers)
 
@@ -130,7 +131,7 @@ class Case(NamedTuple):
 
     def bound(self, numbers: Numbers) -> float:
         """The model's own largest step, in steps of these numbers."""
-        if self.model == "ca":
+        if self.model == AUTOMATON.name:
             rule = rule_with(numbers, cast("Variant", self.variant))
             pile = bcre_ca.Pile(np.zeros(8), np.ones(8))
             return bcre_ca.largest_stable_step(pile, rule, "periodic")
@@ -141,15 +142,15 @@ class Case(NamedTuple):
 def _pde_stable(method: ExplicitMethod, growth: float, numbers: Numbers) -> bool:
     """:func:`bcre_pde.theory.stable`, on fewer waves and up to some growth."""
     return all(
-        theory.amplification_bound(*numbers, method, ANGLES, limited=limited) <= 1 + growth
-        for limited in (False, True)
+        theory.amplification_bound(*numbers, method, ANGLES, rough=rough) <= 1 + growth
+        for rough in (False, True)
     )
 
 
 def run() -> dict[str, pd.DataFrame]:
     """One row a plane; the planes row by row and their boundaries; positivity; LSODA and BDF."""
-    cases = [Case("ca", variant, plane) for variant in VARIANTS for plane in PLANES]
-    cases += [Case("pde", method, plane) for method in METHODS for plane in PLANES]
+    cases = [Diagram(AUTOMATON.name, variant, plane) for variant in VARIANTS for plane in PLANES]
+    cases += [Diagram(BCRE.name, method, plane) for method in METHODS for plane in PLANES]
     measured = each(_measure, cases, "stability")
     layers = each(_positivity, VARIANTS, "stability, R >= 0")
     return {
@@ -164,13 +165,13 @@ def run() -> dict[str, pd.DataFrame]:
 Row = dict[str, Any]
 
 
-def _measure(case: Case) -> tuple[Row, list[Row], list[Row]]:
-    head: Row = {"model": case.model, "variant": str(case.variant), "plane": case.plane}
-    boundaries = [head | row for row in _boundaries(case)]
-    x, y = (limit * (np.arange(POINTS) + 0.5) / POINTS for limit in case.limits())
-    tests = case.grows(), case.predicted(), case.accepted
+def _measure(diagram: Diagram) -> tuple[Row, list[Row], list[Row]]:
+    head: Row = {"model": diagram.model, "variant": str(diagram.variant), "plane": diagram.plane}
+    boundaries = [head | row for row in _boundaries(diagram)]
+    x, y = (limit * (np.arange(POINTS) + 0.5) / POINTS for limit in diagram.limits())
+    tests = diagram.grows(), diagram.predicted(), diagram.accepted
     grows, predicted, accepted = (
-        np.array([[test(case.numbers(a, b)) for a in x] for b in y]) for test in tests
+        np.array([[test(diagram.numbers(a, b)) for a in x] for b in y]) for test in tests
     )
     rows = [
         head | {"y": round(float(b), 4), "stable": "".join("01"[not cell] for cell in line)}
@@ -199,13 +200,13 @@ def _measure(case: Case) -> tuple[Row, list[Row], list[Row]]:
     return summary, boundaries, rows
 
 
-def _boundaries(case: Case) -> list[Row]:
+def _boundaries(diagram: Diagram) -> list[Row]:
     """Along every ray, in the units of the plane: measured, predicted, and the model's own."""
-    width, height = case.limits()
-    grows, predicted, visible = case.grows(), case.predicted(), case.no_visible_growth()
+    width, height = diagram.limits()
+    grows, predicted, visible = diagram.grows(), diagram.predicted(), diagram.no_visible_growth()
     rows = []
     for angle in (np.arange(RAYS) + 0.5) / RAYS * np.pi / 2:
-        ray = case.numbers(width * np.cos(angle), height * np.sin(angle))
+        ray = diagram.numbers(width * np.cos(angle), height * np.sin(angle))
         expected = _last(predicted, ray, 0.02, 2.0)
         shown = _last(visible, ray, 0.02, 2.0)
         found = _last(lambda numbers: not grows(numbers), ray, 0.3 * expected, 2.5 * expected)
@@ -215,7 +216,7 @@ def _boundaries(case: Case) -> list[Row]:
                 "predicted": significant(expected, 3),
                 "visible": significant(shown, 3),
                 "measured": significant(found, 3),
-                "bound": significant(case.bound(ray), 3),
+                "bound": significant(diagram.bound(ray), 3),
             }
         )
     return rows
@@ -250,7 +251,7 @@ def _positivity(variant: Variant) -> Row:
 
         def stays(numbers: Numbers) -> bool:
             h, R = np.zeros_like(start), start.copy()
-            kernels.march(h, R, rule_with(numbers, variant), 1, "periodic")
+            bcre_ca.march(h, R, rule_with(numbers, variant), 1, "periodic")
             return bool(R.min() >= 0)
 
         ratios.append(_last(stays, ray.times(bound), 0.5, 4.0))
@@ -298,35 +299,34 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     table = tables["comparison"]
     limited = table["variant"] == "limited"
     dop853 = table["variant"] == "DOP853"
-    automaton = table["model"] == "ca"
+    automaton = table["model"] == AUTOMATON.name
     return [
-        _predicted("the automaton's rules", table[automaton & ~limited], LINEAR),
+        _predicted("the automaton's rules", table[automaton & ~limited], ""),
         _predicted("the flux-limited rule", table[limited], LIMITED),
-        _predicted("BCRE by runge-kutta and RK45", table[~automaton & ~dop853], EXPLICIT),
-        _predicted("BCRE by DOP853", table[dop853], DOP853),
+        _predicted("BCRE by runge-kutta and RK45", table[~automaton & ~dop853], EXPLICIT, True),
+        _predicted("BCRE by DOP853", table[dop853], DOP853, True),
         _bounds(table, tables["positivity"]),
         _implicit_methods(tables["implicit"]),
     ]
 
 
-LINEAR = "The rules are linear in small waves, and so is the prediction."
 LIMITED = (
     "The prediction is that of a limiter that passes every difference or none. What it does to "
     "noise lies between; beyond v dt/d = 1 with much diffusion, where no step may be taken "
-    "anyway, this keeps noise calm that either limiter alone would let grow."
+    "anyway, this keeps noise calm that either limiter alone would let grow"
 )
 EXPLICIT = (
     "Fehlberg's method lets smooth waves of 10 to 50 cells grow from v dt/dx = 1.44 on, but by "
-    "less than 1e-4 a step up to 1.51, too slowly to be seen in the steps taken."
+    "less than 1e-4 a step up to 1.51, too slowly to be seen in the steps taken"
 )
 DOP853 = (
     "What the limiter of the differences does changes between its twelve stages, so that the step "
     "is no polynomial of the spectrum; SciPy's error control, not this boundary, keeps its steps "
-    "short."
+    "short"
 )
 
 
-def _predicted(what: str, rows: pd.DataFrame, why: str) -> Claim:
+def _predicted(what: str, rows: pd.DataFrame, why: str, quality: bool = False) -> Claim:
     wrong, farthest = int(rows["predicted_stable_but_grows"].sum()), rows["distance_percent"].max()
     worst = rows.loc[rows["distance_percent"].idxmax()]
     good = wrong == 0 and farthest <= 100 * GOAL
@@ -335,11 +335,15 @@ def _predicted(what: str, rows: pd.DataFrame, why: str) -> Claim:
         statement=f"Of {what} no step predicted stable lets noise grow, and the boundary lies "
         f"within {GOAL:.0%} of the predicted one.",
         verdict=Verdict.AGREE if good else Verdict.DISAGREE,
-        evidence=f"{wrong} of {rows['points'].sum()} points are predicted stable but grow; the "
-        f"boundary is at most {farthest:g} % away ({worst['variant']}, {worst['plane']}), and "
-        f"{rows['distance_visible_percent'].max():g} % from where growth by 10 in the steps taken "
-        f"is predicted. {why}",
+        evidence=sentences(
+            f"{wrong} of {rows['points'].sum()} points are predicted stable but grow; the "
+            f"boundary is at most {farthest:g} % away ({worst['variant']}, {worst['plane']}), and "
+            f"{rows['distance_visible_percent'].max():g} % from where growth by 10 in the steps "
+            "taken is predicted",
+            when(not good, why),
+        ),
         tolerance=WHY,
+        quality=quality,
     )
 
 
@@ -349,7 +353,7 @@ def _bounds(table: pd.DataFrame, positivity: pd.DataFrame) -> Claim:
     limited = positivity[positivity["variant"] == "limited"].iloc[0]
     good = passed == 0 and (positivity["verdict"] == str(Verdict.AGREE)).all()
     pde = table[table["variant"] == "runge-kutta"]
-    return Claim(
+    return quality_check(
         name="known before it happens",
         statement="No step that a model's own bound lets pass is unstable, and none of the "
         "automaton's makes a layer negative.",
@@ -366,7 +370,7 @@ def _bounds(table: pd.DataFrame, positivity: pd.DataFrame) -> Claim:
 
 def _implicit_methods(table: pd.DataFrame) -> Claim:
     good = (table["verdict"] == str(Verdict.AGREE)).all()
-    return Claim(
+    return quality_check(
         name="methods without a boundary",
         statement=f"LSODA and BDF stay bounded at {TEN} times the explicit step.",
         verdict=Verdict.AGREE if good else Verdict.DISAGREE,
@@ -403,15 +407,15 @@ def _draw_plane(axis: Axes, head: pd.Series[Any], tables: dict[str, pd.DataFrame
         return rows[(rows["variant"] == head["variant"]) & (rows["plane"] == head["plane"])]
 
     variant = next((v for v in VARIANTS if str(v) == head["variant"]), head["variant"])
-    width, height = Case(head["model"], variant, head["plane"]).limits()
-    look = style.MODELS[head["model"]]
+    width, height = Diagram(head["model"], variant, head["plane"]).limits()
+    model = MODELS[head["model"]]
     for row in of("points").itertuples():
         stable_cells = [i for i, mark in enumerate(row.stable) if mark == "1"]
         runs = [(i * width / POINTS, width / POINTS) for i in stable_cells]
         axis.broken_barh(
             _joined(runs),
             (float(row.y) - height / POINTS / 2, height / POINTS),
-            color=look["color"],
+            color=model.color,
             alpha=0.22,
             linewidth=0,
         )
@@ -425,14 +429,13 @@ def _draw_plane(axis: Axes, head: pd.Series[Any], tables: dict[str, pd.DataFrame
         axis.plot(x, y, **line)
     axis.set(xlim=(0, width), ylim=(0, height))
     x_label, y_label = LABELS[head["plane"]]
-    cell = "d" if head["model"] == "ca" else "dx"
+    cell = "d" if model is AUTOMATON else "dx"
     axis.set_xlabel(x_label.replace("dt/d", f"dt/{cell}"))
     axis.set_ylabel(y_label.replace("dt/d", f"dt/{cell}"))
-    name = "automaton" if head["model"] == "ca" else "BCRE"
-    axis.set_title(f"{name}, {head['variant']}", loc="left")
+    axis.set_title(f"{model.label}, {head['variant']}", loc="left")
 
 
-LINES: dict[str, style.Look] = {
+LINES: dict[str, Look] = {
     "predicted": {"color": "black", "linewidth": 1.2, "label": "predicted, |G| = 1"},
     "bound": {
         "color": "0.35",

@@ -1,0 +1,17 @@
+"""Sums that lose nothing to rounding, for compiled code."""
+
+from __future__ import annotations
+
+import numba
+
+
+@numba.njit(error_model="numpy")
+def add(account, term):  # type: ignore[no-untyped-def]
+    """Add ``term`` to account[0]; account[1] holds what rounding has taken from it (Kahan 1965).
+
+    So the balance of mass holds to rounding after any number of steps.
+    """
+    corrected = term - account[1]
+    total = account[0] + corrected
+    account[1] = (total - account[0]) - corrected
+    account[0] = total

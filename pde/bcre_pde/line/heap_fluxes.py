@@ -1,0 +1,138 @@
+r"""The compiled right-hand side of :mod:`bcre_pde.line.hadeler_kuttler`: fifth order, conservative.
+
+In u = h + Sc x, so that S = Sc - u_x,
+
+    u_t = -E        R_t = -F_x + E + w        E = gamma R (abs(S) - Sc)        F = J - D R_x
+
+* u on a face leans downhill; which way that is, the four cells around say. The cell values J =
+  beta R S lean uphill: those > 0 to one side, those < 0 to the other, so that nothing crosses a
+  ridge. The values are those of :func:`bcre_pde.stencils.face_value`.
+* R_x on a face is central, of order 6.
+* Beyond an end stand ghost cells: mirrored, wrapped, or as the end asks for.
+"""
+
+from __future__ import annotations
+
+import numba
+
+from bcre_pde.kept import SOURCES
+from bcre_pde.stencils import GHOSTS, face_value
+
+JOINED, OPEN, WALLED = 0, 1, 2
+
+_compiled = numba.njit(error_model="numpy")
+
+
+@_compiled
+def _extend(row, cells, ends, rise, foot):  # type: ignore[no-untyped-def]
+    """Ghosts of u: ``rise`` is Sc dx, ``foot`` is u on an open foot."""
+    first, last = GHOSTS, GHOSTS + cells - 1
+    for k in range(1, GHOSTS + 1):
+        if ends == JOINED:
+            row[first - k], row[last + k] = row[last + 1 - k], row[first - 1 + k]
+        elif ends == WALLED:
+            row[first - k] = row[first + k - 1] - (2 * k - 1) * rise
+            row[last + k] = row[last + 1 - k] + (2 * k - 1) * rise
+        else:
+            row[first - k] = row[first] + k * (row[first] - row[first + 1])
+            row[last + k] = foot
+
+
+@_compiled
+def _extend_layer(row, cells, ends, sign):  # type: ignore[no-untyped-def]
+    """Ghosts of R (``sign`` 1) or J (-1): mirrored at closed ends, even beyond an open foot."""
+    first, last = GHOSTS, GHOSTS + cells - 1
+    for k in range(1, GHOSTS + 1):
+        if ends == JOINED:
+            row[first - k], row[last + k] = row[last + 1 - k], row[first - 1 + k]
+        else:
+            row[first - k] = sign * row[first + k - 1]
+            row[last + k] = sign * row[last + 1 - k] if ends == WALLED else row[last]
+
+
+@_compiled
+def _falls(u, f, rise):  # type: ignore[no-untyped-def]
+    """Whether the surface falls downhill on face f; u carries ghosts."""
+    climb = 27 * (u[f + 3] - u[f + 2]) - (u[f + 4] - u[f + 1])
+    return climb <= 24 * rise
+
+
+@_compiled
+def _seen_from_below(u, f, rise):  # type: ignore[no-untyped-def]
+    if _falls(u, f, rise):
+        return face_value(u[f + 5], u[f + 4], u[f + 3], u[f + 2], u[f + 1])
+    return face_value(u[f], u[f + 1], u[f + 2], u[f + 3], u[f + 4])
+
+
+@_compiled
+def _carried(J, f):  # type: ignore[no-untyped-def]
+    """What moves to the right from the left of face f, and to the left from its right."""
+    rightwards = face_value(
+        max(J[f], 0.0),
+        max(J[f + 1], 0.0),
+        max(J[f + 2], 0.0),
+        max(J[f + 3], 0.0),
+        max(J[f + 4], 0.0),
+    )
+    leftwards = face_value(
+        min(J[f + 5], 0.0),
+        min(J[f + 4], 0.0),
+        min(J[f + 3], 0.0),
+        min(J[f + 2], 0.0),
+        min(J[f + 1], 0.0),
+    )
+    return rightwards + leftwards
+
+
+def entry(sources: str):  # type: ignore[no-untyped-def]
+    """The compiled right-hand side; ``sources`` is a part of the key of its machine code."""
+
+    @numba.njit(cache=True, error_model="numpy")
+    def rate(  # type: ignore[no-untyped-def]
+        state, out, padded, faces, supply, beta, gamma, Sc, D, dx, ends
+    ):
+        """Write the time derivative of ``state`` into ``out``.
+
+        Parameters
+        ----------
+        state, out: as for :func:`bcre_pde.line.fluxes.rate`.
+        padded, faces: scratch of shapes (3, N + 6) and (2, N + 1).
+        supply: what sources pour into each cell, length/time, shape (N,).
+        ends: joined (0), open (1) or walled (2).
+        """
+        sources  # noqa: B018
+        cells = state.shape[1]
+        u, R, J, u_face, flux = padded[0], padded[1], padded[2], faces[0], faces[1]
+        for i in range(cells):
+            u[i + GHOSTS] = state[0, i]
+            R[i + GHOSTS] = state[1, i]
+        rise = Sc * dx
+        _extend(u, cells, ends, rise, state[2, 0])
+        _extend_layer(R, cells, ends, 1.0)
+        for f in range(cells + 1):
+            u_face[f] = _seen_from_below(u, f, rise)
+        for i in range(cells):
+            slope = Sc - (u_face[i + 1] - u_face[i]) / dx
+            J[i + GHOSTS] = beta * state[1, i] * slope
+            gained = gamma * max(state[1, i], 0.0) * (abs(slope) - Sc)
+            out[0, i] = -gained
+            out[1, i] = gained + supply[i]
+            out[2, i] = 0.0
+        _extend_layer(J, cells, ends, -1.0)
+        for f in range(cells + 1):
+            steepness = 245 * (R[f + 3] - R[f + 2]) - 25 * (R[f + 4] - R[f + 1])
+            steepness += 2 * (R[f + 5] - R[f])
+            flux[f] = _carried(J, f) - D / (180 * dx) * steepness
+        if ends != JOINED:
+            flux[0] = 0.0
+        if ends == WALLED:
+            flux[cells] = 0.0
+        for i in range(cells):
+            out[1, i] += (flux[i] - flux[i + 1]) / dx
+        if ends == OPEN:
+            out[2, cells - 1] = flux[cells] / (cells * dx)
+
+    return rate
+
+
+rate = entry(SOURCES)

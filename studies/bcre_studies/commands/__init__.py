@@ -1,0 +1,1 @@
+"""The commands, a file each; heavy modules are imported when a command needs them."""

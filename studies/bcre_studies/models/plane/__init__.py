@@ -1,0 +1,1 @@
+"""Running scenes on a plane in the automaton and in BCRE."""

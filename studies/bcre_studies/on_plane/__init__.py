@@ -1,0 +1,1 @@
+"""What ``bcre run`` writes for a scene on a plane: frames, a summary, pictures."""

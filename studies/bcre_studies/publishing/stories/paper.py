@@ -1,0 +1,133 @@
+"""What the paper shows, how its rule must be read, and what needs a second layer."""
+
+from __future__ import annotations
+
+import pandas as pd
+
+from bcre_studies.models.registry import AUTOMATON, BCRE
+from bcre_studies.publishing.stories.story import Story, Tables
+from bcre_studies.publishing.wording import figure_name, listed, number, of, percent, span_of
+from bcre_studies.scenes.scene import load
+
+DRIFT = 0.001
+"""A reading keeps the drift where it is within this part of v."""
+
+
+def _paper_figures(tables: Tables) -> list[str]:
+    rows = tables["comparison"]
+    profiles = rows[rows["quantity"].str.startswith("R(x)")]
+    judged = profiles[profiles["verdict"] != "unresolved"]
+    at_one = judged[judged["d"] == 1.0]
+    finest = judged[judged["d"] == judged["d"].min()]
+    sentences = [
+        "Both models start from the same layers. Their rolling layers are compared by the area "
+        "between the two curves, over the area under BCRE’s."
+    ]
+    if len(at_one):
+        sentences.append(
+            f"They are {span_of(at_one['difference'])} apart with the paper’s cells and "
+            f"{span_of(finest['difference'])} with cells a quarter as long. BCRE with D_eff and "
+            f"κ_eff is within {percent(float(at_one['difference_effective'].max()))}."
+        )
+    late = at_one.groupby("case", sort=False)["t"].max()
+    unjudged = [
+        figure_name(str(case)) + (f" after t = {number(late[case])}" if case in late else "")
+        for case, t in profiles.groupby("case", sort=False)["t"].max().items()
+        if case not in late or t > late[case]
+    ]
+    if unjudged:
+        sentences.append(
+            f"{listed(unjudged).capitalize()} stays unresolved: on the finest grid tried BCRE’s "
+            "own error is not small against the difference."
+        )
+    return sentences
+
+
+def _printed_rule(tables: Tables) -> list[str]:
+    rows = tables["comparison"].astype({"caption": bool})
+    readings = rows.groupby(["step", "sign", "order"])["caption"].all()
+    met = [key for key, good in readings.items() if good]
+    literal = sum(step == "literal" for step, _, _ in met)
+    kept = [key for key in met if _keeps_the_drift(rows, key)]
+    sentences = [
+        f"The printed rule leaves sign, order and time step open: {len(readings)} readings, each "
+        "run on all three figures.",
+        f"{len(met)} of them show what every caption says, {literal or 'none'} of these with the "
+        "literal d = dt = 1.",
+    ]
+    if [order for _, _, order in kept] == ["synchronous"]:
+        sentences.append("Only the synchronous one among them drifts at the v that is printed.")
+    return sentences
+
+
+def _keeps_the_drift(rows: pd.DataFrame, reading: tuple[str, str, str]) -> bool:
+    step, sign, order = reading
+    of_reading = of(rows, step=step, sign=sign, order=order)
+    printed = [load(str(name)).material.v for name in of_reading["figure"]]
+    return bool((of_reading["drift"] / printed - 1).abs().max() < DRIFT)
+
+
+def _one_variable(tables: Tables) -> list[str]:
+    rows = tables["comparison"]
+    undisturbed = rows[rows["case"].str.endswith("pulse 0")]
+    rough = rows[rows["quantity"].str.startswith("RMS")].iloc[0]
+    reach = of(rows, quantity="reach uphill").iloc[0]
+    stands = bool((undisturbed[[AUTOMATON.column, BCRE.column]] > 0.001).all(axis=None))
+    left = number(float(undisturbed["one_variable"].max()))
+    return [
+        "A pile with one variable, its height, topples wherever it is steeper than Sc.",
+        f"Undisturbed, it falls to S − Sc = {left} from every slope tried"
+        + (", where both two-layer models stand until they are disturbed." if stands else "."),
+        f"It smooths a rough slope to {percent(float(rough['one_variable']))} of its roughness; "
+        f"figure 3’s pulse reaches {number(float(reach['one_variable']), 2)} uphill in it, "
+        f"{number(float(reach['automaton']), 2)} in the automaton.",
+    ]
+
+
+def _choices(tables: Tables) -> list[str]:
+    rows = tables["comparison"]
+    verdicts = rows.groupby("verdict on", sort=False)["stands"].agg(
+        lambda column: all(column == "yes")
+    )
+    turned = rows[rows["stands"] == "no"].groupby("choice", sort=False).size()
+    sentences = [
+        "The paper names v, D and γ only. Length, slopes, pulse, cells and step are our choices; "
+        "each is halved and doubled in turn.",
+        f"{int(verdicts.sum())} of {len(verdicts)} verdicts stand with every change.",
+    ]
+    if len(turned):
+        most = turned.idxmax()
+        sentences.append(f"The choice that turns most verdicts is {most}: {turned[most]} of them.")
+    return sentences
+
+
+STORIES: dict[str, Story] = {
+    "paper_figures": Story(
+        "Do the paper’s three figures come out alike in both models?",
+        ("D_eff = D + (v d/2) (1 - v dt/d)", "κ_eff = gamma d/2"),
+        "Static layer of figure 1 and rolling layer of figures 2 and 3 at five times, in the "
+        "automaton, in BCRE, and in BCRE with the automaton’s own coefficients.",
+        _paper_figures,
+    ),
+    "printed_rule": Story(
+        "How must the printed rule be read?",
+        ("R ← R - gamma R (dh - |Sc|) ?", "R ← R + gamma R (S - Sc) ?"),
+        "For twelve readings and three figures, whether the caption is met, the run breaks, or it "
+        "runs without showing it.",
+        _printed_rule,
+    ),
+    "one_variable": Story(
+        "Which of these properties need a second layer at all?",
+        ("f = (1/4) max(0, h(i) - h(i + 1) - Sc d)", "h(i) ← h(i) + f(i - 1) - f(i)"),
+        "Final slope of the one-variable pile, the two-layer automaton and BCRE, undisturbed and "
+        "after a pulse.",
+        _one_variable,
+    ),
+    "choices": Story(
+        "Do the verdicts depend on what we chose ourselves?",
+        ("x → x/2 and x → 2 x",),
+        "Verdicts by choices: a disc where halving and doubling leave the verdict, a cross where "
+        "one of them turns it.",
+        _choices,
+    ),
+}

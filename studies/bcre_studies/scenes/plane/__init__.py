@@ -1,0 +1,1 @@
+"""Scenes on a plane: x downhill, y across."""

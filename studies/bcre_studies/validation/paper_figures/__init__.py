@@ -1,0 +1,1 @@
+"""Study: the paper's figures in both models."""

@@ -1,0 +1,1 @@
+"""Study: the printed rule, read in every way."""

@@ -1,0 +1,1 @@
+"""Study: how fast roughness decays."""

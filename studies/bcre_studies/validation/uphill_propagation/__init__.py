@@ -1,0 +1,1 @@
+"""Study: how avalanches propagate uphill."""
