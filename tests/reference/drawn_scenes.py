@@ -13,9 +13,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import exact_sand
 import numpy as np
 from numpy.typing import NDArray
+
+import exact_sand
 from plain_automaton import Column
 from sand import Sand
 

@@ -10,16 +10,17 @@ import math
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import exact_sand
 import numpy as np
-import plain_automaton
-import plain_bcre
-from drawn_scenes import Drawn
 from numpy.typing import NDArray
 
-from bcre_studies.models.simulate import Run
+import exact_sand
+import plain_automaton
+import plain_bcre
+from bcre_studies.models.run import Run
 from bcre_studies.running.run import run_scene
-from bcre_studies.scenes.scene import SceneError, load
+from bcre_studies.scenes.refusal import SceneError
+from bcre_studies.scenes.scene import load
+from drawn_scenes import Drawn
 
 Array = NDArray[np.float64]
 
@@ -36,8 +37,8 @@ DRY = 3.0
 """Mean change of R by the cut-off, in units of ``dry``: two fronts leave a layer of it each."""
 
 CHECKS: dict[str, str] = {
-    "start h": "automaton: h at t = 0 against the exact mean over each cell",
-    "start R": "automaton: R at t = 0 against the exact mean over each cell",
+    "start h": "automaton: h at t = 0 against the exact value at each cell's centre",
+    "start R": "automaton: R at t = 0 against the exact value at each cell's centre",
     "start BCRE": "BCRE: h and R at t = 0 against the exact values, or means, on its own grid",
     "start mass": "automaton against BCRE: sand at the start, relative to all that rolls",
     "rule": "automaton, fixed step: h and R against the plain automaton, largest difference",
@@ -111,7 +112,7 @@ def _whole_steps(drawn: Drawn) -> int:
 
 def of_start(drawn: Drawn, automaton: Run) -> dict[str, Found]:
     """The automaton's sand at t = 0."""
-    h, R = exact_sand.averages(drawn.data, drawn.cells)
+    h, R = exact_sand.values(drawn.data, automaton.x)
     scale, allowed = float(R.max()), _exactness(drawn)
     return {
         "start h": Found(_largest(automaton.h[0] - h) / scale, allowed),
@@ -232,8 +233,15 @@ def _of_frames_of_bcre(drawn: Drawn, path: Path, bcre: Run) -> dict[str, Found]:
     x = drawn.d * (np.arange(drawn.cells) + 0.5)
     gap = float(np.mean(np.abs(sampled(few, x) - sampled(bcre, x))))
     scale = float(bcre.R.max())
-    allowed = sum(run.error or 0.0 for run in (few, bcre)) / scale + 1e-6
+    allowed = sum(stated(run, "error_estimate") or 0.0 for run in (few, bcre)) / scale + 1e-6
     return {"BCRE frames": Found(gap / scale, allowed)}
+
+
+def stated(run: Run, name: str) -> float | None:
+    """The mean error that a run states of itself, a length; None where it knows none."""
+    layer = float(np.abs(run.R).mean())
+    share = run.facts.get(name)
+    return None if share is None else share * layer
 
 
 def sampled(run: Run, x: Array) -> Array:
@@ -247,18 +255,15 @@ def sampled(run: Run, x: Array) -> Array:
 
 
 def _of_bcre(drawn: Drawn, run: Run) -> dict[str, Found]:
-    """BCRE's layers at the recorded times, allowed the error that it states of itself.
-
-    It states none of h; that of R stands in.
-    """
+    """BCRE's layers at the recorded times, allowed the error that it states of itself."""
     u, R, u_off, R_off = plain_solution(drawn, run.t[1:], run.x)
     h = u - drawn.sand.Sc * run.x
     scale = float(run.R.max())
     floor = 1e-6 * scale + (TABLE * scale if drawn.data["rolling"][0]["kind"] == "table" else 0.0)
-    stated = {"R": run.error, "h": getattr(run, "error_h", run.error)}
+    errors = {"R": stated(run, "error_estimate"), "h": stated(run, "error_estimate_h")}
     found = {}
     for name, gap, off in (("R", run.R[1:] - R, R_off), ("h", run.h[1:] - h, u_off)):
-        error = stated[name] if stated[name] is not None else math.inf
+        error = math.inf if errors[name] is None else errors[name]
         allowed = error + float(np.mean(off)) + floor
         found[f"BCRE {name}"] = Found(float(np.mean(np.abs(gap))) / scale, allowed / scale)
     return found

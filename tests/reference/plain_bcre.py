@@ -18,9 +18,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from sand import Sand
 from scipy.integrate import solve_ivp
 from scipy.interpolate import make_interp_spline
+
+from sand import Sand
 
 Array = NDArray[np.float64]
 

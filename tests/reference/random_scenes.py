@@ -1,8 +1,8 @@
-"""Hold random scenes against plain integrations: ``python tests/reference/random_scenes.py``.
+"""Hold random scenes against plain integrations: ``make reference``.
 
 Prints, for every check, how many scenes it concerned, how many break it, and the worst of them;
-before that the scenes that break a check, which ``--first N --scenes 1`` draws again. Ends with 1 if
-any does.
+before that the scenes that break a check, which ``--first N --scenes 1`` draws again. The exit code
+is 1 if any does.
 """
 
 from __future__ import annotations
@@ -18,9 +18,10 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from tabulate import tabulate
+
 from drawn_scenes import OPTIONS, Drawn, draw
 from judged import CHECKS, Found, judge
-from tabulate import tabulate
 
 
 class Row(NamedTuple):

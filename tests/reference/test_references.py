@@ -5,11 +5,12 @@ import cmath
 import math
 from pathlib import Path
 
-import exact_sand
 import numpy as np
+import pytest
+
+import exact_sand
 import plain_automaton
 import plain_bcre
-import pytest
 from drawn_scenes import OPTIONS, draw
 from sand import Sand
 
