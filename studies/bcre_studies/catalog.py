@@ -38,12 +38,22 @@ STUDIES = {
     "avalanche_extent": Entry(
         "validation.avalanche_extent", "What an avalanche moves: how much, how far, and when"
     ),
+    "opening_angle": Entry(
+        "validation.opening_angle.study", "The angle at which an avalanche opens on a plane"
+    ),
     "choices": Entry(
         "validation.choices", "Do the verdicts stand when our own choices are halved and doubled?"
     ),
     "modified_equation": Entry(
         "verification.modified_equation",
         "How much of the difference is the automaton's own diffusion?",
+    ),
+    "agreement_map": Entry(
+        "validation.agreement_map.study", "Where in its parameters does the automaton agree?"
+    ),
+    "sensitivity": Entry("validation.sensitivity", "Which parameter moves which property?"),
+    "avalanche_statistics": Entry(
+        "validation.avalanche_statistics.study", "Avalanches under slow driving: is there a scale?"
     ),
     "printed_rule": Entry("validation.printed_rule.study", "The printed rule, read in every way"),
     "one_variable": Entry(

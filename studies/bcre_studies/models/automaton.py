@@ -66,16 +66,16 @@ class Automaton(Adapter):
         try:
             return self.run(scene, times)
         except (bcre_ca.UnstableStep, FloatingPointError) as failure:
-            step = scene.time.step
-            raise SceneError(f"time.step = {step!r}: {failure}, or be 'auto'") from None
+            raise _refused(scene, failure) from None
 
     def require_runnable(self, scene: Scene) -> None:
         thickest = thickest_layer(scene)  # distinguishes an overflow from an unstable step
-        steps = scene.time.until / rule_of(scene).dt
+        rule = rule_of(scene)
+        steps = scene.time.until / rule.dt
         if scene.time.step == "auto":
             steps = max(steps, scene.time.until * scene.material.gamma * thickest / scene.d)
         else:
-            self.answer(scene, [0.0], (), lambda _: False)  # refuses a step that cannot be stable
+            _require_stable(scene, rule)
         refuse_endless(scene, "automaton", steps, MOST_STEPS)
 
     def note(self, scene: Scene) -> str:
@@ -87,6 +87,19 @@ class Automaton(Adapter):
         )
 
 
+def _require_stable(scene: Scene, rule: bcre_ca.Rule) -> None:
+    pile = bcre_ca.Pile(*scene.initial(scene.centres()))
+    bound = bcre_ca.largest_stable_step(pile, rule, scene.domain.ends)
+    try:
+        rule.require_within(bound, float(pile.R.max()))
+    except bcre_ca.UnstableStep as failure:
+        raise _refused(scene, failure) from None
+
+
+def _refused(scene: Scene, failure: Exception) -> SceneError:
+    return SceneError(f"time.step = {scene.time.step!r}: {failure}, or be 'auto'")
+
+
 def rule_of(scene: Scene) -> bcre_ca.Rule:
     """The scene's automaton; a scene whose step is "auto" gets its largest step at the start."""
     material, automaton = scene.material, scene.automaton
@@ -96,14 +109,14 @@ def rule_of(scene: Scene) -> bcre_ca.Rule:
         material.gamma,
         material.Sc,
         scene.d,
-        dt=1.0,
+        dt=1.0 if scene.time.step == "auto" else scene.time.step,
         scheme=automaton.scheme,
         kappa=0.0 if automaton.scheme == "upwind" else material.kappa,
         v_up=math.inf if material.v_up is None else material.v_up,
         dry=automaton.dry,
     )
     if scene.time.step != "auto":
-        return replace(rule, dt=scene.time.step)
+        return rule
     pile = bcre_ca.Pile(*scene.initial(scene.centres()))
     bound = bcre_ca.largest_stable_step(pile, rule, scene.domain.ends)
     return replace(rule, dt=min(bcre_ca.MARGIN * bound, scene.time.until))
