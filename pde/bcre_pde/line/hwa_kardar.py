@@ -26,7 +26,7 @@ from pde import CartesianGrid, FieldCollection, SDEBase
 
 from bcre_pde.advance import advance_with_noise
 from bcre_pde.gate import is_finite, require_not_negative
-from bcre_pde.kept import SOURCES
+from bcre_pde.kept import SOURCES, kept
 from bcre_pde.line.marched import MarchedOnLine
 from bcre_pde.problem import Array, Problem
 from bcre_pde.stencils import GHOSTS, face_value
@@ -123,7 +123,7 @@ def _extend(row, cells, periodic, walled):  # type: ignore[no-untyped-def]
 def entry(sources: str):  # type: ignore[no-untyped-def]
     """The compiled right-hand side; ``sources`` is a part of the key of its machine code."""
 
-    @numba.njit(cache=True, error_model="numpy")
+    @kept()
     def rate(  # type: ignore[no-untyped-def]
         state, out, padded, flux, supply, nu, lam, level, dx, closed, periodic
     ):

@@ -112,7 +112,7 @@ class BCRE(Marched):
     def largest_explicit_step(self, largest_R: float) -> float:
         """The bound of the line, with what spreads along and across added up."""
         m = self.material
-        wet = exchanging.py_func(largest_R, m.along.saturation)
+        wet = exchanging(largest_R, m.along.saturation)
         rolling = 32 / 15 * m.v / self.dx + self._spread(m.D_x, m.D_y)
         climbing = 32 / 15 * m.gamma * wet / self.dx + self._spread(m.kappa_x, m.kappa_y) * wet
         rate = max(rolling, climbing)
