@@ -185,7 +185,7 @@ def test_a_number_names_the_same_scene_for_ever():
     assert first["material"]["v"] == V_OF_SCENE_0
 
 
-V_OF_SCENE_0 = 0.0
+V_OF_SCENE_0 = 0.1865
 
 
 def test_every_two_options_meet_in_three_hundred_scenes():
