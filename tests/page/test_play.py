@@ -56,6 +56,7 @@ def played(tmp_path):
 def test_a_scene_plays_is_poured_on_and_ends_with_ctrl_c(played, browser):
     program, address = played
     page = browser.new_page()
+    page.set_default_timeout(200_000)  # a fresh machine compiles first
     complaints, asked_for = [], []
     page.on("console", lambda note: complaints.append(note.text))
     page.on("pageerror", lambda error: complaints.append(str(error)))

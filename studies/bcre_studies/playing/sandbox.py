@@ -53,6 +53,7 @@ class Sandbox:
         self._first = h
         self._plane = plane_of(scene, h)
         self._pointer: Source | None = None
+        Run(Sand(h, R + ~scene.walls()), self._plane).take(1, 0.0)  # compiles, before it is shown
         self._run = Run(Sand(h, R), self._plane)
         self.span = scene.time.until / (LASTS * FRAMES)
 
