@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from bcre_ca.rule import Ends
 
 Array = NDArray[np.float64]
 
@@ -48,8 +50,8 @@ def whole(steps: Any) -> int:
 
 def require_ends(ends: str) -> None:
     """Raise ValueError for unknown ends."""
-    if ends not in ("open", "periodic"):
-        raise ValueError(f"ends = {ends!r}: must be 'open' or 'periodic'")
+    if ends not in get_args(Ends):
+        raise ValueError(f"ends = {ends!r}: must be one of {get_args(Ends)}")
 
 
 def layers_of(h: ArrayLike, R: ArrayLike, rank: int) -> tuple[Array, Array]:
