@@ -113,6 +113,30 @@ def test_cells_get_what_is_poured_whatever_the_grid(place, width, cells, rate):
     assert not supply[~covered].any()
 
 
+@pytest.mark.parametrize(("R0", "A"), [(0.8, 1e-3), (0.5, -1e-3)])
+def test_order_of_the_slope_driven_rule_on_the_exponential_slope_is_one(R0, A):
+    """R = R0, S - Sc = A exp((gamma/beta)(x + gamma R0 t)): what falls faster is what is eroded.
+
+    In the middle, which what the ends do has not reached.
+    """
+    rule, until, grids, errors = replace(DRIVEN, D=0.0), 2.0, (100, 200, 400), []
+    rate = rule.gamma / rule.beta
+    for cells in grids:
+        d = 16.0 / cells
+        x = (np.arange(cells) + 0.5) * d
+
+        def h_at(t, x=x):
+            return -rule.Sc * x - A / rate * np.exp(rate * (x + rule.gamma * R0 * t))
+
+        steps = 6 * cells
+        h, R = evolve(h_at(0), np.full(cells, R0), replace(rule, d=d, dt=until / steps), steps)
+        inside = (x > 6) & (x < 10)
+        errors.append([np.abs(R - R0)[inside].mean(), np.abs(h - h_at(until))[inside].mean()])
+    for kind in np.transpose(errors):
+        assert 0.9 <= -np.polyfit(np.log(grids), np.log(kind), 1)[0] <= 1.1
+        assert kind[-1] < abs(A)
+
+
 def silo(rule, d):
     """S(x) and R(x) of a silo of LENGTH that rises at 0.1, between the cells."""
     cells, rate = round(LENGTH / d), 0.1 * LENGTH

@@ -22,7 +22,7 @@ def layers(seed, cells=60):
 
 @given(seed=st.integers(0, 2**32 - 1), Gamma=st.floats(1e-3, 2))
 def test_compiled_steps_are_the_plain_ones_to_the_bit(seed, Gamma):
-    rule = replace(RULE, Gamma=Gamma)
+    rule = replace(RULE, Gamma=Gamma, D=0.0)
     h, R = layers(seed)
     account, compiled = np.zeros(2), (h.copy(), R.copy())
     kernels.march(*compiled, rule, 5, "open", account)
@@ -46,6 +46,45 @@ def test_thick_layer_carries_half_gamma_r_squared_more(seed, ends):
     assert thick[0] == pytest.approx(thin[0], abs=1e-15)
     assert thick[1] == pytest.approx(thin[1] + into - more, abs=1e-14)
     assert thick[2] == pytest.approx(thin[2] + (more[-1] if ends == "open" else 0.0))
+
+
+def order(cells, errors):
+    return float(-np.polyfit(np.log(cells), np.log(errors), 1)[0])
+
+
+@pytest.mark.parametrize(
+    ("v", "gamma", "Gamma", "v_up"), [(0.6, 0.5, 0.4, 0.9), (0.3, 0.8, 0.9, 2.0)]
+)
+def test_order_of_the_rule_on_the_simple_wave_of_a_thick_layer_is_one(v, gamma, Gamma, v_up):
+    """R = R0(x + c(R) t), u = -R - (v/gamma) ln R - (Gamma/gamma + v/v_up) R - (Gamma/v_up) R^2/2.
+
+    In the middle, which what the ends do has not reached.
+    """
+    length, until, grids, errors = 40.0, 2.0, (200, 400, 800), []
+    for cells in grids:
+        d = length / cells
+        x = (np.arange(cells) + 0.5) * d
+
+        def R_at(t, x=x):
+            R = np.ones_like(x)
+            for _ in range(300):
+                c = gamma * R / (1 + gamma * R / v_up)
+                R = 1 + 0.3 * np.exp(-(((x + c * t - 20) / 2.5) ** 2))
+            return R
+
+        def u_of(R):
+            linear = Gamma / gamma + v / v_up
+            return -R - v / gamma * np.log(R) - linear * R - Gamma / v_up * R**2 / 2
+
+        rule = Rule(v, 0.0, gamma, 0.5, d, until / (2 * cells), v_up=v_up, Gamma=Gamma)
+        h, R = evolve(u_of(R_at(0)) - 0.5 * x, R_at(0), rule, 2 * cells)
+        inside = (x > 12) & (x < 28)
+        exact = R_at(until)
+        gaps = R - exact, h + 0.5 * x - u_of(exact)
+        errors.append([np.abs(gap[inside]).mean() for gap in gaps])
+    for kind in np.transpose(errors):
+        assert 0.9 <= order(grids, kind) <= 1.1
+        assert kind[-1] < 3e-3
 
 
 def test_rule_without_gamma_leaves_the_term_out():
