@@ -15,7 +15,7 @@ ifneq ($(shell $(RUNS) 2>/dev/null),$(CURDIR)/studies/bcre_studies/__init__.py)
 CLEAR := --clear
 endif
 
-.PHONY: help install reports speed test test-cluster docs faults bench check lint clean
+.PHONY: help install reports speed maps test test-cluster docs faults bench check lint clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-13s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -36,6 +36,9 @@ reports: install ## run all studies, write reports/; time them here, into report
 speed: install ## renew the committed record of speed (some minutes, on a quiet machine)
 	$(BIN)/bcre speed --record
 	$(BIN)/bcre report
+
+maps: install ## the agreement map from 200,000 scenes (hours; SCHEDULER=tcp://host:port: on a cluster)
+	$(BIN)/python -c 'from bcre_studies.validation.agreement_map.fine import main; main()' $(if $(SCHEDULER),--scheduler $(SCHEDULER))
 
 test: install ## run the tests; those of the page where Chromium is installed
 	@! command -v chromium >/dev/null || $(BIN)/python -c 'import playwright' 2>/dev/null \

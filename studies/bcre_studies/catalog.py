@@ -45,6 +45,13 @@ STUDIES = {
         "verification.modified_equation",
         "How much of the difference is the automaton's own diffusion?",
     ),
+    "agreement_map": Entry(
+        "validation.agreement_map.study", "Where in its parameters does the automaton agree?"
+    ),
+    "sensitivity": Entry("validation.sensitivity", "Which parameter moves which property?"),
+    "avalanche_statistics": Entry(
+        "validation.avalanche_statistics.study", "Avalanches under slow driving: is there a scale?"
+    ),
     "printed_rule": Entry("validation.printed_rule.study", "The printed rule, read in every way"),
     "one_variable": Entry(
         "validation.one_variable", "Control: which properties need the second layer?"

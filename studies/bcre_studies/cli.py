@@ -13,16 +13,18 @@ import click
 from bcre_studies.commands.advise import advise
 from bcre_studies.commands.check import check
 from bcre_studies.commands.listing import list_all
+from bcre_studies.commands.new import new
 from bcre_studies.commands.options import examples
 from bcre_studies.commands.report import report
 from bcre_studies.commands.run import run
+from bcre_studies.commands.show import show
 from bcre_studies.commands.speed import speed
 from bcre_studies.commands.study import run_studies
 from bcre_studies.commands.sweep import sweep
 from bcre_studies.system.one_line import one_line
 from bcre_studies.system.release import release
 
-COMMANDS = (run, advise, sweep, list_all, run_studies, report, check, speed)
+COMMANDS = (run, new, show, advise, sweep, list_all, run_studies, report, check, speed)
 
 BROKEN_PIPE = 141
 """The exit code of a program whose reader has gone, as a shell gives it."""

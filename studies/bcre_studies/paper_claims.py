@@ -271,8 +271,16 @@ PAPER_CLAIMS = (
     ),
     PaperClaim(
         "Statistical properties of avalanches will be met",
-        undecided=UNDECIDED,
-        remarks={UNDECIDED: "no study here drives a pile for long enough to have statistics"},
+        as_stated=(
+            ("avalanche_statistics", "sizes under tilting"),
+            ("avalanche_statistics", "sizes under feeding"),
+        ),
+        under_condition=(("avalanche_statistics", "oscillation between two slopes"),),
+        measured=(("avalanche_statistics", "small avalanches"),),
+        remarks={
+            CONDITIONAL: "not the power laws of critical systems: driven slowly, the slope "
+            "oscillates as in BCRE, with avalanches of one size that carry nearly all the sand"
+        },
     ),
     PaperClaim(
         "The model agrees with what experiments on real granular systems show",

@@ -138,7 +138,7 @@ def test_summary_has_the_named_keys_and_the_pde_an_error_estimate(bcre):
     assert list(summary) == ["ca", "pde"]
     assert set(summary["ca"]) == BOTH | {"step_lowered", "step_raised", "blocks_redone"}
     assert set(summary["pde"]) == BOTH | PDE_ERRORS
-    for word in ("o/profiles.csv", "o/summary.json", "ca: cells 100", "pde: cells "):
+    for word in ("profiles.csv, summary.json, figure.svg in o", "automaton", "BCRE (PDE)"):
         assert word in ended.out
     assert ended.err == ""
 
@@ -254,7 +254,8 @@ def test_tables_are_found_beside_the_scene_wherever_the_command_is_started(bcre,
     Path("elsewhere").mkdir()
     monkeypatch.chdir("elsewhere")
     assert bcre("run", scene, "--model", "ca").code == 0
-    assert files() == ["out", "out/scene", "out/scene/profiles.csv", "out/scene/summary.json"]
+    written = ("figure.svg", "profiles.csv", "summary.json")
+    assert files() == ["out", "out/scene", *(f"out/scene/{name}" for name in written)]
 
 
 def test_same_run_writes_the_same_profiles(bcre):

@@ -84,7 +84,7 @@ def test_every_claim_that_the_ledger_names_is_recorded_and_every_remark_is_that_
     ("start", "word"),
     [
         ("The model is fit for interactive simulation", UNTESTABLE),
-        ("Statistical properties", UNDECIDED),
+        ("Statistical properties", CONDITIONAL),
         ("The model agrees with what experiments", UNDECIDED),
         ("The computation is not performed on a discretization", REFUTED),
         ("It avoids the technical considerations", REFUTED),

@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from bcre_studies.commands import options
 from bcre_studies.models.registry import BOTH, CHOICES
 
+if TYPE_CHECKING:
+    from bcre_studies.running.done import Done
+
 
 @click.command(
     epilog=options.examples(
         "bcre run figure2",
         "bcre run figure1 --set v=0.2 --set cells=200 --model ca --frames 21",
-        "bcre run my_scene.toml --out results",
+        "bcre run my_scene.toml --out results --open",
+        "bcre run figure3 --frames 41 --animate",
+        "bcre run figure2 --json > figure2.json",
         "bcre run triangular_avalanche --animate",
     )
 )
@@ -25,7 +32,10 @@ from bcre_studies.models.registry import BOTH, CHOICES
 @click.option(
     "--out", type=click.Path(file_okay=False, path_type=Path), help="Folder  [default: out/SCENE]"
 )
-@click.option("--animate", is_flag=True, help="Write animation.gif too, of a scene on a plane.")
+@click.option("--animate", is_flag=True, help="Write animation.gif too.")
+@click.option("--open", "show", is_flag=True, help="Open the figure, or the animation.")
+@click.option("--json", "as_json", is_flag=True, help="Print numbers for machines, as JSON.")
+@click.option("--quiet", is_flag=True, help="Print nothing but refusals.")
 def run(
     scene: str,
     model: str | None,
@@ -33,47 +43,41 @@ def run(
     frames: int,
     out: Path | None,
     animate: bool,
+    show: bool,
+    as_json: bool,
+    quiet: bool,
 ) -> None:
-    """Run SCENE, a built-in name or a TOML file; write profiles.csv and summary.json.
+    """Run SCENE, a built-in name or a TOML file, and print what came out.
 
-    Of a scene on a plane: frames.nc, summary.json and picture.png.
+    Writes profiles.csv, summary.json and figure.svg; of a scene on a plane frames.nc, summary.json
+    and picture.png.
     """
+    from bcre_studies.on_line import command as on_line
     from bcre_studies.on_plane import command as on_plane
-    from bcre_studies.running.place import (
-        FILES,
-        SUMMARY,
-        Origin,
-        require_apart,
-        require_own,
-        scenes_of,
-    )
-    from bcre_studies.scenes.scene import load
-    from bcre_studies.system.files import require_writable
+    from bcre_studies.running.place import Origin
 
+    if as_json and quiet:
+        raise click.UsageError("--quiet: must be left out where --json is given")
     origin = Origin(scene, assignments)
     folder = out or Path("out") / origin.name
-    if on_plane.takes(scene):
-        for line in on_plane.run(origin, model, frames, folder, out is None, animate):
-            click.echo(line)
-        return
-    if animate:
-        raise click.UsageError("--animate: must be left out for a scene on a line")
-    model = model or BOTH
-    require_writable("--out", folder, FILES)
-    loaded = load(scene, assignments)  # what is refused here need not wait for the solvers
-    require_apart("--out", [folder / name for name in FILES], origin.inputs(loaded))
-    if out is None:
-        require_own(folder / SUMMARY, scenes_of(folder / SUMMARY), origin)
-    from bcre_studies.running.run import notes, run_scene, write_run
+    command = on_plane if on_plane.takes(scene) else on_line
+    done = command.run(origin, model, frames, folder, out is None, animate)
+    if as_json:
+        files = [path.as_posix() for path in done.files]
+        click.echo(json.dumps(done.record | {"files": files}, indent=2))
+    elif not quiet:
+        _say(done)
+    if show:
+        click.launch(str(done.picture))
 
-    summary = write_run(run_scene(loaded, model, frames), folder, origin)
-    for note in notes(loaded, model):
+
+def _say(done: Done) -> None:
+    from rich.console import Console
+
+    for note in done.notes:
         click.echo(f"note: {note}", err=True)
-    for name, numbers in summary.items():
-        facts = ", ".join(f"{key} {_short(value)}" for key, value in numbers.items())
-        click.echo(f"{name}: {facts}")
-    click.echo(f"wrote {folder / 'profiles.csv'} and {folder / 'summary.json'}")
-
-
-def _short(value: object) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
+    console = Console(markup=False, highlight=False)
+    for part in done.said:
+        console.print(part, soft_wrap=True)
+    names = ", ".join(path.name for path in done.files)
+    console.print(f"wrote {names} in {done.files[0].parent}", soft_wrap=True)

@@ -94,16 +94,16 @@ class Automaton(Adapter):
         try:
             return self.run(scene, times)
         except (bcre_ca.UnstableStep, FloatingPointError) as failure:
-            step = scene.time.step
-            raise SceneError(f"time.step = {step!r}: {failure}, or be 'auto'") from None
+            raise _refused(scene, failure) from None
 
     def require_runnable(self, scene: Scene) -> None:
         thickest = thickest_layer(scene)  # distinguishes an overflow from an unstable step
-        steps = scene.time.until / self.rule(scene).dt
+        rule = self.rule(scene)
+        steps = scene.time.until / rule.dt
         if scene.time.step == "auto":
             steps = max(steps, scene.time.until * scene.material.gamma * thickest / scene.d)
         else:
-            self.answer(scene, [0.0], (), lambda _: False)  # refuses a step that cannot be stable
+            _require_stable(scene, rule)
         refuse_endless(scene, "automaton", steps, MOST_STEPS)
 
     def note(self, scene: Scene) -> str:
@@ -113,6 +113,19 @@ class Automaton(Adapter):
             "the paper's rule has no curvature term; the automaton runs without "
             f"kappa = {scene.material.kappa!r} (automaton.scheme calibrated or limited takes it)"
         )
+
+
+def _require_stable(scene: Scene, rule: bcre_ca.Rule) -> None:
+    pile = bcre_ca.Pile(*scene.initial(scene.centres()))
+    bound = bcre_ca.largest_stable_step(pile, rule, scene.domain.ends)
+    try:
+        rule.require_within(bound, float(pile.R.max()))
+    except bcre_ca.UnstableStep as failure:
+        raise _refused(scene, failure) from None
+
+
+def _refused(scene: Scene, failure: Exception) -> SceneError:
+    return SceneError(f"time.step = {scene.time.step!r}: {failure}, or be 'auto'")
 
 
 def rule_of(scene: Scene) -> bcre_ca.Rule:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -97,8 +98,10 @@ class Bcre(Adapter):
         rolling layer.
         """
         x = scene.centres()
+        grids: list[Run] = []
 
         def measure(run: Run) -> list[Array]:
+            grids.append(run)
             frames = range(run.t.size)
             return [np.array([run.sample(x, field, frame) for frame in frames]) for field in "Ru"]
 
@@ -117,7 +120,8 @@ class Bcre(Adapter):
                 f"solver.method = {scene.solver.method!r}: {failure}; must be a method that can "
                 f"solve this scene to solver.tolerance = {scene.solver.tolerance!r}"
             ) from None
-        return run_of(scene, found[0].solution, found)
+        finest = run_of(scene, found[0].solution, found)
+        return replace(finest, coarser=tuple(grids[-bcre_pde.LEAST_GRIDS : -1]))
 
     def measured(
         self,
@@ -143,9 +147,8 @@ class Bcre(Adapter):
             solution = bcre_pde.solve(problem, times, cells, **options)
             return solution, on_solution(solution)
 
-        if scene.solver.cells is not None:
-            return bcre_pde.measure_refined(on_cells, _given_grids(scene))
-        return bcre_pde.measure_refined(on_cells, _grids(scene), allowed)
+        asked = allowed if scene.solver.cells is None else None
+        return bcre_pde.measure_refined(on_cells, grids_of(scene), asked)
 
     def require_runnable(self, scene: Scene) -> None:
         grid = scene.solver.cells or COARSEST
@@ -237,7 +240,12 @@ def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def _grids(scene: Scene) -> Iterator[int]:
+def grids_of(scene: Scene) -> Iterable[int]:
+    """The grids that BCRE goes through on this scene, coarsest first."""
+    return _refined_grids(scene) if scene.solver.cells is None else _given_grids(scene)
+
+
+def _refined_grids(scene: Scene) -> Iterator[int]:
     """Ever finer grids, from half of the automaton's cells where those can hold the start."""
     cells = max(scene.domain.cells, COARSEST)
     if cells % 2 == 0 and scene.holds(cells // 2):

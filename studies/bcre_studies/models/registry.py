@@ -5,6 +5,7 @@ To list the models imports none of them. What a model needs is imported when it 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -58,6 +59,11 @@ class Model:
         """See :meth:`bcre_studies.models.adapter.Adapter.answer`."""
         run = self.adapter().answer(scene, times, earlier, stop)
         return replace(run, model=self.name)
+
+    @property
+    def text(self) -> str:
+        """The label where no mathematics can be set, on a terminal."""
+        return re.sub(r"\\mathrm|[${}\\]", "", self.label)
 
     @property
     def line(self) -> Look:

@@ -15,9 +15,6 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-UNITS = {"t": "time", "x": "length", "h": "length", "R": "length", "outflow": "length^2"}
-"""A scene has one consistent unit of length and one of time, which it does not name."""
-
 LONG_NAMES = {
     "t": "time",
     "x": "distance downhill, at cell centres",
@@ -39,6 +36,7 @@ class Run:
     wall_s: seconds it took, compiling excluded.
     compile_s: seconds that compiling took, or reading what is compiled already; where it is known.
     facts: what only this model can say of its run, as the summary shows it.
+    coarser: the run on coarser grids, coarsest first, where the model was refined.
     model: the model's name in the registry, which fills it in.
     """
 
@@ -53,6 +51,7 @@ class Run:
     wall_s: float = 0.0
     compile_s: float = 0.0
     facts: dict[str, Any] = field(default_factory=dict)
+    coarser: tuple[Run, ...] = ()
     model: str = ""
 
     @property
@@ -64,6 +63,13 @@ class Run:
     def u(self) -> Array:
         """Height above the repose line, h + Sc x."""
         return self.h + self.scene.material.Sc * self.x
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of each quantity; a scene that names none has one of length and one of time."""
+        named = self.scene.units
+        length, time = (named.length, named.time) if named else ("length", "time")
+        return {"t": time, "x": length, "h": length, "R": length, "outflow": f"{length}^2"}
 
     def mass(self) -> Array:
         """Area of sand in the domain at every time."""
@@ -117,7 +123,7 @@ class Run:
             "R": self.R.ravel(),
         }
         table = pd.DataFrame({**labels, "model": self.model, **columns})
-        table.attrs["units"] = {name: UNITS[name] for name in columns}
+        table.attrs["units"] = {name: self.units[name] for name in columns}
         return table
 
     def to_xarray(self) -> xr.Dataset:
@@ -144,7 +150,7 @@ class Run:
             | {name: value for name, value in known.items() if value is not None}
             | took,
         )
-        for name, unit in UNITS.items():
+        for name, unit in self.units.items():
             data[name].attrs = {"long_name": LONG_NAMES[name], "units": unit}
         return data
 

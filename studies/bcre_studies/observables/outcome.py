@@ -127,4 +127,5 @@ def slope(x: ArrayLike, h: ArrayLike) -> float:
     x, h = np.asarray(x, dtype=float), np.asarray(h, dtype=float)
     length = x[0] + x[-1]
     middle = (x >= length / 4) & (x <= length * 3 / 4)
-    return -float(np.polynomial.Polynomial.fit(x[middle], h[middle], 1).convert().coef[1])
+    from_middle = x[middle] - x[middle].mean()
+    return -float(from_middle @ h[middle] / (from_middle @ from_middle))

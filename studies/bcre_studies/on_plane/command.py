@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bcre_studies.models.registry import AUTOMATON, BCRE
+from bcre_studies.running.done import Done
 from bcre_studies.running.place import (
     SUMMARY,
     Origin,
@@ -49,8 +50,8 @@ def run(
     folder: Path,
     is_own_folder: bool,
     animate: bool,
-) -> Iterator[str]:
-    """Run the scene, write its files into ``folder``, and say line by line what was done.
+) -> Done:
+    """Run the scene and write its files into ``folder``.
 
     Parameters
     ----------
@@ -77,7 +78,7 @@ def run(
         _require_memory(scene, frames, len(names))
         times = [float(t) for t in np.linspace(0.0, scene.time.until, frames)]
         runs = _runs(scene, names, times)
-    yield from write(runs, folder, origin, animate)
+    return write(runs, folder, origin, animate)
 
 
 def _runs(scene: PlaneScene, names: Sequence[str | None], times: list[float]) -> list[PlaneRun]:
@@ -91,8 +92,8 @@ def _runs(scene: PlaneScene, names: Sequence[str | None], times: list[float]) ->
     return [automaton.run(scene, times)] * (AUTOMATON.name in names) + [bcre.run(scene, times)]
 
 
-def write(runs: Sequence[PlaneRun], folder: Path, origin: Origin, animate: bool) -> Iterator[str]:
-    """Write the files of these runs of one scene; say what is in them."""
+def write(runs: Sequence[PlaneRun], folder: Path, origin: Origin, animate: bool) -> Done:
+    """Write the files of these runs of one scene."""
     from bcre_studies.on_plane import netcdf, picture
 
     summary = {run.model: run.summary() | origin.record(run.scene, folder) for run in runs}
@@ -105,10 +106,13 @@ def write(runs: Sequence[PlaneRun], folder: Path, origin: Origin, animate: bool)
 
         replace_bytes(folder / ANIMATION, animation.content(runs))
         written.append(ANIMATION)
+    lines = []
     for name, numbers in summary.items():
         facts = (f"{key} {_short(value)}" for key, value in numbers.items())
-        yield f"{name}: {', '.join(facts)}"
-    yield f"wrote {', '.join(written)} in {folder}"
+        lines.append(f"{name}: {', '.join(facts)}")
+    files = tuple(folder / name for name in written)
+    picture_of = folder / (ANIMATION if animate else PICTURE)
+    return Done(files, picture_of, {"models": summary}, lines)
 
 
 def _short(value: object) -> str:

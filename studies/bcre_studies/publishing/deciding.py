@@ -14,7 +14,7 @@ import pandas as pd
 from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON, BCRE
-from bcre_studies.publishing.wording import fixed, number, of, percent, span
+from bcre_studies.publishing.wording import fixed, number, of, percent, span, span_of
 
 Key = tuple[str, str]
 Tables = Mapping[str, pd.DataFrame]
@@ -158,6 +158,11 @@ def _spread(tables: Tables) -> str:
     )
 
 
+def _one_size(tables: Tables) -> str:
+    rows = of(tables["comparison"], drive="tilting, length")
+    return f"big avalanches carry {span_of(rows['share_of_sand'])} of the sand"
+
+
 def _literal(tables: Tables) -> str:
     rows = of(tables["comparison"], step="literal", figure="figure2", order="synchronous")
     factor = float(rows["amplification"].iloc[0])
@@ -204,6 +209,7 @@ NUMBERS: dict[Key, Callable[[Tables], str]] = {
     ("avalanche_extent", "even slope"): _even,
     ("avalanche_extent", "avalanche below repose"): _below,
     ("avalanche_extent", "spreads, not travels"): _spread,
+    ("avalanche_statistics", "sizes under tilting"): _one_size,
     ("printed_rule", "the literal step"): _literal,
     ("speed_error", "efficiency"): _efficiency,
     ("scaling", "interactive"): _interactive,

@@ -15,8 +15,8 @@ from bcre_studies.scenes.refusal import SceneError
 from bcre_studies.scenes.scene import Scene
 from bcre_studies.system.release import release
 
-FILES = PROFILES, SUMMARY = "profiles.csv", "summary.json"
-"""What a run writes."""
+PROFILES, SUMMARY = "profiles.csv", "summary.json"
+"""What a run writes of its numbers."""
 
 
 @dataclass(frozen=True)

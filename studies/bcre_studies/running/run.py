@@ -41,7 +41,7 @@ def run_scene(scene: Scene, choice: str, frames: int) -> list[Run]:
     times = frame_times(scene, frames)
     with compiling() as compiled_s:
         require_runnable(scene, choice, frames)
-        with _failures_name_their_key(scene):
+        with failures_name_their_key(scene):
             for model in chosen(choice):
                 with _progress(scene, model) as show:
                     run = model.answer(scene, times, runs, show)
@@ -60,7 +60,7 @@ def require_runnable(scene: Scene, choice: str, frames: int) -> None:
         small to compute with.
     """
     adapters = [model.adapter() for model in chosen(choice)]
-    with _failures_name_their_key(scene):
+    with failures_name_their_key(scene):
         needed = sum(adapter.memory(scene, frames) for adapter in adapters)
         memory.require(f"{_grids(scene)} with --frames = {frames}", needed)
         for adapter in adapters:
@@ -74,7 +74,7 @@ def notes(scene: Scene, choice: str) -> list[str]:
 
 
 @contextmanager
-def _failures_name_their_key(scene: Scene) -> Iterator[None]:
+def failures_name_their_key(scene: Scene) -> Iterator[None]:
     """Raise floating-point errors; what a run can fail of names a key of the scene."""
     try:
         with (
@@ -104,10 +104,10 @@ def _progress(scene: Scene, model: Model) -> Iterator[Callable[[Run], bool]]:
     from rich.progress import Progress
 
     with Progress(console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task(model.label, total=scene.time.until)
+        task = progress.add_task(model.text, total=scene.time.until)
 
         def show(run: Run) -> bool:
-            text = f"{model.label}, {run.x.size} cells"
+            text = f"{model.text}, {run.x.size} cells"
             progress.update(task, description=text, completed=float(run.t[-1]))
             return False
 

@@ -22,6 +22,13 @@ class StrictTable(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
 
+class Units(StrictTable):
+    """``[units]``: what lengths and times are called in the files written."""
+
+    length: Annotated[str, Field(min_length=1, max_length=20)] = "m"
+    time: Annotated[str, Field(min_length=1, max_length=20)] = "s"
+
+
 class SceneFile(StrictTable):
     """A whole scene file; the files that it names lie in its folder."""
 

@@ -15,7 +15,15 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import Field, ValidationError, model_validator
 
-from bcre_studies.scenes.domain import Array, Domain, NonNegative, Positive, SceneFile, StrictTable
+from bcre_studies.scenes.domain import (
+    Array,
+    Domain,
+    NonNegative,
+    Positive,
+    SceneFile,
+    StrictTable,
+    Units,
+)
 from bcre_studies.scenes.refusal import SceneError as SceneError
 from bcre_studies.scenes.refusal import first_of, kinds_of, refuse_long_integers
 from bcre_studies.scenes.source import Source
@@ -81,6 +89,7 @@ class Scene(SceneFile):
     source: tuple[Source, ...] = ()
     automaton: Automaton = Automaton()
     solver: Solver = Solver()
+    units: Units | None = None
 
     @model_validator(mode="after")
     def _sources_lie_on_the_line(self) -> Self:

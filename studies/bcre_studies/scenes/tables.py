@@ -32,9 +32,28 @@ class ProfileError(ValueError):
 
 def read_table(key: str, path: Path, column: str, domain: Domain) -> tuple[Array, Array]:
     """The columns x and ``column`` of a CSV file; x must ascend and span the domain."""
+    x, values = read_columns(f"{key}.file", path, column)
+    length = domain.length
+    low, high = (max(domain.d, gap) / 2 * (1 + 1e-9) for gap in (x[1] - x[0], x[-1] - x[-2]))
+    if x[0] > low or x[-1] < length - high:
+        raise ProfileError(
+            f"{key}.file = {path.name!r}: x runs from {x[0]:.6g} to {x[-1]:.6g}; must span 0 to "
+            f"{length:.6g} (half a cell, or half its own spacing, may be missing at either end)"
+        )
+    return x, values
+
+
+def read_columns(key: str, path: Path, column: str) -> tuple[Array, Array]:
+    """The columns x and ``column`` of a CSV file with at least four rows, in which x ascends.
+
+    Raises
+    ------
+    ProfileError
+        naming ``key``, the file and what is allowed.
+    """
 
     def refuse(why: str) -> ProfileError:
-        return ProfileError(f"{key}.file = {path.name!r}: {why}")
+        return ProfileError(f"{key} = {path.name!r}: {why}")
 
     head, rows = _rows(path, refuse)
     for name in ("x", column):
@@ -52,13 +71,6 @@ def read_table(key: str, path: Path, column: str, domain: Domain) -> tuple[Array
     if not (np.diff(x) > 0).all():
         row = int(np.argmax(~(np.diff(x) > 0))) + 1
         raise refuse(f"x = {float(x[row])!r} in row {row + 1}: x must ascend")
-    length = domain.length
-    low, high = (max(domain.d, gap) / 2 * (1 + 1e-9) for gap in (x[1] - x[0], x[-1] - x[-2]))
-    if x[0] > low or x[-1] < length - high:
-        raise refuse(
-            f"x runs from {x[0]:.6g} to {x[-1]:.6g}; must span 0 to {length:.6g} "
-            f"(half a cell, or half its own spacing, may be missing at either end)"
-        )
     return x, values
 
 

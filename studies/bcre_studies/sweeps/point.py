@@ -13,6 +13,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -46,7 +47,7 @@ class MeasurePoint:
             for model in self._models:
                 adapter = model.adapter()
                 needed = adapter.memory(scene, self.spec.frames)
-                memory.require(f"domain.cells = {scene.domain.cells!r}", needed)
+                _require_memory(f"domain.cells = {scene.domain.cells!r}", needed)
                 adapter.require_runnable(scene)
             return self._observed(scene)
 
@@ -133,6 +134,12 @@ class _Solved:
             allowed_error(other, value, self._spec.tolerance, scale)
             for other, value, scale in zip(others, values, self.scales, strict=True)
         ]
+
+
+@cache
+def _require_memory(what: str, needed: int) -> None:
+    """Asked once for each size: the points of a sweep are alike, and the system answers slowly."""
+    memory.require(what, needed)
 
 
 def _quantity(name: str, run: Run, x: Any) -> Any:

@@ -172,10 +172,3 @@ def test_bad_scene_ends_in_one_line_with_exit_2_and_nothing_written(
     assert err.count("\n") == 1
     assert message in err
     assert not (tmp_path / "out").exists()
-
-
-def test_animation_of_a_scene_on_a_line_is_refused(monkeypatch, capsys):
-    monkeypatch.setattr(sys, "argv", ["bcre", "run", "figure2", "--animate"])
-    with pytest.raises(SystemExit):
-        cli.main()
-    assert "--animate: must be left out for a scene on a line" in capsys.readouterr().err

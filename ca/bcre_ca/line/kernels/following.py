@@ -44,7 +44,7 @@ class Course(NamedTuple):
     steps: int
     margin: float
     calibrating: float
-    longest: float
+    longest: float = math.inf
 
 
 T, FORMER, BEGAN, DT = range(4)

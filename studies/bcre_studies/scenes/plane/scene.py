@@ -12,7 +12,14 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import Field, ValidationError, model_validator
 
-from bcre_studies.scenes.domain import Array, NonNegative, Positive, SceneFile, StrictTable
+from bcre_studies.scenes.domain import (
+    Array,
+    NonNegative,
+    Positive,
+    SceneFile,
+    StrictTable,
+    Units,
+)
 from bcre_studies.scenes.plane.domain import PlaneDomain
 from bcre_studies.scenes.plane.grids import GridFile, place_of
 from bcre_studies.scenes.plane.objects import Base, Mask, Source, Wall
@@ -56,13 +63,6 @@ class PlaneSolver(StrictTable):
     """``[solver]``: the tolerance of BCRE's steps; its cells are those of the domain."""
 
     tolerance: Annotated[float, Field(gt=0, lt=1)] = 1e-5
-
-
-class Units(StrictTable):
-    """``[units]``: what lengths and times are called in the files written."""
-
-    length: Annotated[str, Field(min_length=1, max_length=20)] = "m"
-    time: Annotated[str, Field(min_length=1, max_length=20)] = "s"
 
 
 class PlaneScene(SceneFile):

@@ -1,0 +1,1 @@
+"""What ``bcre run`` draws and says of a scene on a line."""

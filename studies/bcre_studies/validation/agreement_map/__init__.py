@@ -1,0 +1,1 @@
+"""Where in the space of its parameters the automaton agrees with BCRE."""

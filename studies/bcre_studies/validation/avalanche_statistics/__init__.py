@@ -1,0 +1,1 @@
+"""Sizes, durations and waiting times of avalanches under slow driving."""
