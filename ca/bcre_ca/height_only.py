@@ -7,15 +7,16 @@ with a closed top and the last cell held, where sand leaves; or periodic in h + 
 
 from __future__ import annotations
 
-import numba
 import numpy as np
+
+from bcre_ca.kept import kept
 
 SHARE = 0.25
 SETTLED = 1e-9
 """The pile has settled when no cell sheds more than this in a step (a length)."""
 
 
-@numba.njit(cache=True)
+@kept
 def settled(h, fall, periodic):  # type: ignore[no-untyped-def]
     """The height once no cell sheds more than :data:`SETTLED`, what left, and after how many steps.
 

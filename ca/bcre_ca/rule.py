@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from numbers import Real
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 from bcre_ca import theory
 from bcre_ca.coefficients import (
@@ -60,6 +60,11 @@ class UnstableStep(ValueError):  # noqa: N818 - named for what happened, as Stop
         )
         self.dt = dt
         self.largest = largest
+        self._bound = bound
+
+    def __reduce__(self) -> tuple[type[UnstableStep], tuple[float, float, str]]:
+        """So that it passes from a worker process to the one that asked."""
+        return type(self), (self.dt, self.largest, self._bound)
 
 
 def _is_number(value: object) -> bool:
@@ -147,6 +152,13 @@ class Rule:
                         f"{name} = {getattr(self, name)!r}: must be {printed!r} where order = "
                         f"{self.order!r}, a reading of the printed rule"
                     )
+
+    def with_step(self, step: Any) -> Rule:
+        """The same rule with another dt; ValueError where that is no step."""
+        try:
+            return replace(self, dt=float(step))
+        except (TypeError, ValueError):
+            raise ValueError(f"step = {step!r}: must be 'auto' or a finite number > 0") from None
 
     def parameters(self) -> Parameters:
         """The rule without its dt, absent terms as None."""

@@ -96,6 +96,14 @@ def same_as_automaton(*columns):
 
 TURNS = [
     Turn(
+        "error_estimate",
+        "coverage past t*",
+        DISAGREE,
+        of(regime="past t*", quantity="R", rule="two triples and more"),
+        {"covered": 0.9},
+        said=("R: 90.0%",),
+    ),
+    Turn(
         "paper_figures",
         "calibrated scheme",
         AGREE,

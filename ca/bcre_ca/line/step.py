@@ -25,8 +25,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bcre_ca.exchange import carried, deposit_thin, eroded, eroded_at_foot
+from bcre_ca.gate import require_kind
 from bcre_ca.line import second_order
 from bcre_ca.line.drops import drops, period_drop
+from bcre_ca.line.pile import line_of, require_ends
 from bcre_ca.rule import Ends, Rule
 
 Array = NDArray[np.float64]
@@ -49,12 +51,21 @@ def step(
     h, R: the new layers, shape (N,).
     outflow: what left through the foot, in units of R (times d: an area).
 
+    Raises
+    ------
+    ValueError
+        naming the argument, where it is not what is asked for.
+
     >>> rule = Rule(v=1.0, D=0.0, gamma=0.1, Sc=0.5, d=1.0, dt=0.5)
     >>> step(np.array([3.0, 2.0, 1.5]), np.array([0.0, 1.0, 0.0]), rule)
     (array([3. , 2. , 1.5]), array([0. , 0.5, 0.5]), 0.0)
     """
+    require_kind("rule", rule, Rule)
+    require_ends(ends)
+    h, R = line_of(h, R)
     if frozen is not None:
         rule.require_upwind("a frozen slope")
+        frozen, _ = line_of(frozen, R)
     if rule.scheme == "limited":
         return second_order.step(h, R, rule.coefficients(), period_drop(rule, h.size, ends))
     if rule.order == "synchronous":
