@@ -15,7 +15,7 @@ ifneq ($(shell $(RUNS) 2>/dev/null),$(CURDIR)/studies/bcre_studies/__init__.py)
 CLEAR := --clear
 endif
 
-.PHONY: help install reports speed maps test test-cluster costs docs faults bench check lint clean
+.PHONY: help install reports speed maps test test-cluster costs docs faults reference bench check lint clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-13s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -63,6 +63,9 @@ docs: install ## build the documentation, docs/_build/index.html; a warning is a
 
 faults: install ## try every fault again and write reports/quality/faults.csv
 	$(BIN)/python tests/robustness/faults.py
+
+reference: install ## hold 300 random scenes against plain integrations (some minutes)
+	$(BIN)/python tests/reference/random_scenes.py
 
 bench: install ## time the automaton against what would be used instead (under 3 minutes)
 	@$(BIN)/python -c 'import fipy' 2>/dev/null \
