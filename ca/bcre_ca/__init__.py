@@ -16,14 +16,17 @@ from bcre_ca.line.evolve import (
 )
 from bcre_ca.line.kernels import BLOCK
 from bcre_ca.line.pile import Pile
+from bcre_ca.line.sources import Source
 from bcre_ca.line.step import step
-from bcre_ca.rule import Rule, UnstableStep
+from bcre_ca.rule import Rule
+from bcre_ca.unstable import UnstableStep
 
 __all__ = [
     "BLOCK",
     "MARGIN",
     "Pile",
     "Rule",
+    "Source",
     "UnstableStep",
     "advance",
     "evolve",

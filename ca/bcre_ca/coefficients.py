@@ -8,51 +8,19 @@ folded anew inside the compiled loop. Terms that a rule does without are None
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from numba.extending import overload, register_jitable
+from numba.extending import register_jitable
 
 from bcre_ca.absent import or_else, over, plus, times
-from bcre_ca.exchange import exchanging
-
-
-class Upwind(NamedTuple):
-    """The paper's differences, of first order."""
-
-
-class Calibrated(NamedTuple):
-    """Upwind, less the diffusion and the curvature that upwind differences add."""
-
-
-class Limited(NamedTuple):
-    """Second order with limited slopes."""
-
-
-class InPlace(NamedTuple):
-    """Upwind, cells updated in place one after the other, downhill or uphill."""
-
-    downhill: bool
-
-
-CompiledScheme = Upwind | Calibrated | Limited | InPlace
-"""A scheme is a type, so that each is compiled by itself."""
-
-
-def by_scheme(default: Callable[..., Any], others: dict[type, Callable[..., Any]]) -> Any:
-    """A function whose body is chosen by the scheme, its last argument.
-
-    Python chooses at each call, the compiler once.
-    """
-
-    def chosen(*arguments: Any) -> Any:
-        return others.get(type(arguments[-1]), default)(*arguments)
-
-    def compiled(*arguments: Any) -> Any:
-        return others.get(arguments[-1].instance_class, default)
-
-    overload(chosen, strict=False)(compiled)
-    return chosen
+from bcre_ca.schemes import (
+    Calibrated,
+    CompiledScheme,
+    InContainer,
+    SlopeDriven,
+    Upwind,
+    by_scheme,
+)
 
 
 class Parameters(NamedTuple):
@@ -69,6 +37,7 @@ class Parameters(NamedTuple):
     kappa: float | None = None
     v_up: float | None = None
     dry: float | None = None
+    Gamma: float | None = None
     scheme: CompiledScheme = Upwind()
 
 
@@ -87,6 +56,7 @@ class Coefficients(NamedTuple):
         (gamma d/2)(1 - exchange X) back: the surface wave becomes that of Lax and Wendroff.
     dry: thickness below which a layer comes to rest, a length.
     emptying: steps in which a cell would empty, 1/(courant + 2 diffusion); absent without ``dry``.
+    thickening: Gamma dt/(2 d), 1/length: what a thick layer R carries beyond courant R, over R^2.
     """
 
     courant: float
@@ -99,6 +69,7 @@ class Coefficients(NamedTuple):
     wave_correction: float | None
     dry: float | None
     emptying: float | None
+    thickening: float | None
     scheme: CompiledScheme
 
 
@@ -122,6 +93,7 @@ def coefficients_in(row: Any, like: Coefficients) -> Coefficients:
         _unless_absent(like.wave_correction, row[7]),
         _unless_absent(like.dry, row[8]),
         _unless_absent(like.emptying, row[9]),
+        _unless_absent(like.thickening, row[10]),
         like.scheme,
     )
 
@@ -129,7 +101,9 @@ def coefficients_in(row: Any, like: Coefficients) -> Coefficients:
 @register_jitable
 def parameters_in(row: Any, scheme: CompiledScheme) -> Parameters:
     """What :func:`row_of` has made a row of, where no term is absent."""
-    return Parameters(row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], scheme)
+    return Parameters(
+        row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8], scheme
+    )
 
 
 @register_jitable
@@ -160,7 +134,8 @@ def fold(p: Parameters, dt: float) -> Coefficients:
         _wave_correction(exchange, p.scheme),
         p.dry,
         emptying_steps(plus(outgoing, diffusion), p.dry),
-        p.scheme,
+        times(p.Gamma, dt / (2 * p.d)),
+        _scheme_of_step(dt, p.scheme),
     )
 
 
@@ -186,6 +161,19 @@ _wave_correction = by_scheme(
 )
 
 
+_scheme_of_step = by_scheme(
+    lambda dt, scheme: scheme,
+    {
+        InContainer: lambda dt, scheme: InContainer(
+            scheme.supply * dt, scheme.walled, scheme.longest
+        ),
+        SlopeDriven: lambda dt, scheme: SlopeDriven(
+            scheme.supply * dt, scheme.walled, scheme.longest, scheme.d
+        ),
+    },
+)
+
+
 @register_jitable
 def every_term(p: Parameters) -> Parameters:
     """The same rule with no term absent, for what need not be compiled for each choice of terms."""
@@ -198,65 +186,6 @@ def every_term(p: Parameters) -> Parameters:
         or_else(p.kappa, 0.0),
         or_else(p.v_up, math.inf),
         or_else(p.dry, 0.0),
+        or_else(p.Gamma, 0.0),
         p.scheme,
     )
-
-
-@register_jitable
-def largest_step(p: Parameters, largest_R: float, sink: float) -> float:
-    """Largest dt that keeps R >= 0 and the surface wave stable; see :mod:`bcre_ca.theory`.
-
-    Parameters
-    ----------
-    largest_R: largest rolling layer, a length.
-    sink: fastest loss per unit of layer, max(kappa h_xx - gamma (S - Sc), 0), 1/time.
-    """
-    X = exchanging(largest_R, over(p.gamma, p.v_up))
-    drift, spread = p.v / p.d, or_else(over(p.D, p.d**2), 0.0)
-    climb, bending = p.gamma / p.d * X, or_else(over(times(p.kappa, X), p.d**2), 0.0)
-    largest: float = _bound(drift, spread, sink, climb, bending, p.scheme)
-    return largest
-
-
-def _bound_of_upwind(
-    drift: float, spread: float, sink: float, climb: float, bending: float, scheme: CompiledScheme
-) -> Any:
-    return min(_inverse(drift + 2 * spread + sink), _inverse(climb + 2 * bending))
-
-
-def _bound_of_calibrated(
-    drift: float, spread: float, sink: float, climb: float, bending: float, scheme: CompiledScheme
-) -> Any:
-    of_layer = min(_inverse(drift + sink), _step_of_quadratic(drift, 2 * spread + sink))
-    return min(of_layer, _step_of_quadratic(climb, 2 * bending))
-
-
-def _bound_of_limited(
-    drift: float, spread: float, sink: float, climb: float, bending: float, scheme: CompiledScheme
-) -> Any:
-    return min(_inverse(drift + 2 * spread + sink) / 2, _inverse(climb + 2 * bending))
-
-
-def _bound_in_place(
-    drift: float, spread: float, sink: float, climb: float, bending: float, scheme: InPlace
-) -> Any:
-    passing = climb + drift + spread if scheme.downhill else climb
-    return min(_inverse(drift + 2 * spread + sink), _inverse(passing))
-
-
-_bound = by_scheme(
-    _bound_of_upwind,
-    {Calibrated: _bound_of_calibrated, Limited: _bound_of_limited, InPlace: _bound_in_place},
-)
-
-
-@register_jitable
-def _step_of_quadratic(p: float, q: float) -> float:
-    """Largest t with (p t)^2 + q t <= 1."""
-    step: float = 2.0 * _inverse(q + math.sqrt(q * q + 4 * p * p))
-    return step
-
-
-@register_jitable
-def _inverse(rate: float) -> float:
-    return 1.0 / rate if rate > 0 else math.inf

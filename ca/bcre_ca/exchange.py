@@ -3,8 +3,9 @@ r"""The exchange law and the flux of the rolling layer, each in one place.
     dt E   = X(R) (gamma dt (S - Sc) - kappa dt h_xx)         eroded from h and added to R in a step
     dt/d F = (v dt/d + D dt/d^2) R(i) - (D dt/d^2) R(i+1)     carried from cell i to cell i+1
 
-X(R) = R, or R/(1 + gamma R/v_up) for thick flows, in which only the grains next to the static
-layer exchange (Boutreux, Raphaël and de Gennes 1998).
+In thick flows only the grains next to the static layer exchange, X(R) = R/(1 + gamma R/v_up)
+instead of R (Boutreux, Raphaël and de Gennes 1998), and those above move faster, by Gamma a height:
+the layer then carries v R + Gamma R^2/2 (Aradian, Raphaël and de Gennes 1999).
 
 K stands for the :class:`bcre_ca.coefficients.Coefficients`. The plain step calls these functions
 with arrays, the compiled one with single cells.
@@ -54,7 +55,20 @@ def eroded_at_foot(R: Any, bend: Any, K: Coefficients) -> Any:
 @register_jitable
 def carried(R: Any, R_next: Any, K: Coefficients) -> Any:
     """dt/d F, what leaves a cell of layer R for the next one downhill."""
-    return minus(K.outgoing * R, times(K.diffusion, R_next))
+    return _thickened(minus(K.outgoing * R, times(K.diffusion, R_next)), R, K.thickening)
+
+
+@register_jitable
+def leaving(R: Any, K: Coefficients) -> Any:
+    """dt/d F, what leaves the last cell through an open foot, beyond which R is the same."""
+    return _thickened(K.courant * R, R, K.thickening)
+
+
+@register_jitable
+def _thickened(flux: Any, R: Any, thickening: float | None) -> Any:
+    if thickening is None:
+        return flux
+    return flux + thickening * (R * R)
 
 
 @register_jitable

@@ -8,17 +8,11 @@ from numbers import Real
 from typing import Any, Literal, get_args
 
 from bcre_ca import theory
-from bcre_ca.coefficients import (
-    Calibrated,
-    Coefficients,
-    CompiledScheme,
-    InPlace,
-    Limited,
-    Parameters,
-    Upwind,
-    fold,
-    largest_step,
-)
+from bcre_ca.coefficients import Coefficients, Parameters, fold
+from bcre_ca.exchange import exchanging
+from bcre_ca.schemes import Calibrated, CompiledScheme, InPlace, Limited, Upwind
+from bcre_ca.stability import largest_step
+from bcre_ca.unstable import LAYER_BOUND, SLOPE_DRIVEN_BOUND, THICK_BOUND, WAVE_BOUND, UnstableStep
 
 Sign = Literal["consistent", "printed"]
 Order = Literal["synchronous", "right", "left"]
@@ -28,12 +22,20 @@ Ends = Literal["open", "wall", "periodic"]
 ROUNDING = 1e-12
 """Relative slack with which a step counts as equal to its bound."""
 
+PRINTED: dict[str, object] = {"scheme": "upwind", "kappa": 0.0, "v_up": math.inf, "Gamma": 0.0}
+"""What the in-place readings of the printed rule take."""
 
-LAYER_BOUND: dict[str, str] = {
-    "upwind": "v dt/d + 2 D dt/d^2 + gamma dt max(Sc - S, 0) must not exceed 1",
-    "calibrated": "(v dt/d)^2 + 2 D dt/d^2 + gamma dt max(Sc - S, 0) must not exceed 1",
-    "limited": "2 (v dt/d + 2 D dt/d^2 + gamma dt max(Sc - S, 0)) must not exceed 1",
+ALONE_WITH_BETA: dict[str, object] = {
+    "v": 0.0,
+    "sign": "consistent",
+    "order": "synchronous",
+    "scheme": "upwind",
+    "kappa": 0.0,
+    "v_up": math.inf,
+    "dry": 0.0,
+    "Gamma": 0.0,
 }
+"""What a rule with beta, whose layer is driven by the slope, takes of the others."""
 
 COMPILED: dict[str, CompiledScheme] = {
     "upwind": Upwind(),
@@ -43,38 +45,9 @@ COMPILED: dict[str, CompiledScheme] = {
     "left": InPlace(downhill=False),
 }
 
-WAVE_BOUND: dict[str, str] = {
-    "synchronous": "gamma R dt/d",
-    "left": "gamma R dt/d",
-    "right": "gamma R dt/d + v dt/d + D dt/d^2",
-}
-
-
-class UnstableStep(ValueError):  # noqa: N818 - named for what happened, as StopIteration is
-    """A time step that cannot be stable; ``largest`` is the largest one that would be."""
-
-    def __init__(self, dt: float, largest: float, bound: str) -> None:
-        super().__init__(
-            f"dt = {dt:.6g} cannot be stable: {bound}; "
-            f"the largest stable step is {_rounded_down(largest)}"
-        )
-        self.dt = dt
-        self.largest = largest
-        self._bound = bound
-
-    def __reduce__(self) -> tuple[type[UnstableStep], tuple[float, float, str]]:
-        """So that it passes from a worker process to the one that asked."""
-        return type(self), (self.dt, self.largest, self._bound)
-
 
 def _is_number(value: object) -> bool:
     return isinstance(value, Real) and math.isfinite(value)
-
-
-def _rounded_down(step: float) -> str:
-    """Six digits that do not exceed the step, so that what is recommended is accepted."""
-    text = f"{step:.6g}"
-    return text if float(text) <= step else f"{step * (1 - 5e-6):.6g}"
 
 
 @dataclass(frozen=True)
@@ -100,6 +73,10 @@ class Rule:
         (:mod:`bcre_ca.line.second_order`).
     kappa: curvature term of the exchange, length/time, >= 0.
     v_up: largest speed of the climbing wave, length/time, > 0; infinite for the linear exchange.
+    Gamma: velocity gradient of a thick layer, which carries v R + Gamma R^2/2; 1/time, >= 0. For
+        the synchronous upwind scheme only.
+    beta: speed of the layer per unit of slope, in place of v; length/time, >= 0. The rule is then
+        that of :mod:`bcre_ca.line.slope_driven`, which takes v = 0, and D, gamma and Sc alone.
     dry: a layer thinner than this comes to rest, R is moved into h, unless what flows in is about
         to make it thicker (:func:`bcre_ca.exchange.deposit_thin`). A length, >= 0.
 
@@ -129,9 +106,11 @@ class Rule:
     kappa: float = 0.0
     v_up: float = math.inf
     dry: float = 0.0
+    Gamma: float = 0.0
+    beta: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("v", "D", "gamma", "Sc", "kappa", "dry"):
+        for name in ("v", "D", "gamma", "Sc", "kappa", "dry", "Gamma", "beta"):
             value = getattr(self, name)
             if not (_is_number(value) and value >= 0):
                 raise ValueError(f"{name} = {value!r}: must be a finite number >= 0")
@@ -145,13 +124,25 @@ class Rule:
                 raise ValueError(f"{name} = {value!r}: must be one of {get_args(allowed)}")
         if not (isinstance(self.v_up, Real) and self.v_up > 0):
             raise ValueError(f"v_up = {self.v_up!r}: must be a number > 0")
+        self._require_plain_scheme()
+
+    def _require_plain_scheme(self) -> None:
+        """Raise ValueError for terms that the rule's order or scheme does not take."""
         if self.order != "synchronous":
-            for name, printed in (("scheme", "upwind"), ("kappa", 0.0), ("v_up", math.inf)):
-                if getattr(self, name) != printed:
-                    raise ValueError(
-                        f"{name} = {getattr(self, name)!r}: must be {printed!r} where order = "
-                        f"{self.order!r}, a reading of the printed rule"
-                    )
+            why = f"where order = {self.order!r}, a reading of the printed rule"
+            self._require(PRINTED, why)
+        if self.beta > 0:
+            self._require(ALONE_WITH_BETA, f"where beta = {self.beta!r}")
+        if self.Gamma > 0 and self.scheme != "upwind":
+            raise ValueError(
+                f"Gamma = {self.Gamma!r}: must be 0 where scheme = {self.scheme!r}; thick layers "
+                "are carried by the upwind scheme only"
+            )
+
+    def _require(self, values: dict[str, object], why: str) -> None:
+        for name, value in values.items():
+            if getattr(self, name) != value:
+                raise ValueError(f"{name} = {getattr(self, name)!r}: must be {value!r} {why}")
 
     def with_step(self, step: Any) -> Rule:
         """The same rule with another dt; ValueError where that is no step."""
@@ -161,9 +152,9 @@ class Rule:
             raise ValueError(f"step = {step!r}: must be 'auto' or a finite number > 0") from None
 
     def parameters(self) -> Parameters:
-        """The rule without its dt, absent terms as None."""
+        """The rule without its dt, absent terms as None; beta in place of v."""
         return Parameters(
-            float(self.v),
+            float(self.beta or self.v),
             float(self.D) if self.D > 0 else None,
             float(self.gamma),
             float(self.exchange_slope()),
@@ -171,6 +162,7 @@ class Rule:
             kappa=float(self.kappa) if self.kappa > 0 else None,
             v_up=float(self.v_up) if math.isfinite(self.v_up) else None,
             dry=float(self.dry) if self.dry > 0 else None,
+            Gamma=float(self.Gamma) if self.Gamma > 0 else None,
             scheme=COMPILED[self.scheme if self.order == "synchronous" else self.order],
         )
 
@@ -191,8 +183,9 @@ class Rule:
     ) -> float:
         """Largest dt that keeps R >= 0 and lets the surface wave cross at most a cell a step.
 
-        The upwind scheme needs v dt/d + 2 D dt/d^2 + sink dt <= 1 and (gamma/d + 2 kappa/d^2) X dt
-        <= 1, where sink = max(kappa h_xx - gamma (S - Sc), 0) and X(R) is the layer that exchanges.
+        The upwind scheme needs J' dt/d + 2 D dt/d^2 + sink dt <= 1 and (gamma/d + 2 kappa/d^2) X dt
+        <= 1, where J' = v + Gamma R, sink = max(kappa h_xx - gamma (S - Sc), 0) and X(R) is the
+        layer that exchanges.
         For the other schemes see :func:`bcre_ca.theory.max_stable_step`.
 
         A sweep downhill updates a cell after it has received what leaves the one above. Up to
@@ -206,6 +199,11 @@ class Rule:
         smallest_slope: smallest slope S in the pile; left out, nowhere below the repose slope.
         largest_curvature: largest h_xx in the pile, 1/length.
         """
+        if self.beta > 0:
+            raise ValueError(
+                f"beta = {self.beta!r}: the largest stable step depends on all slopes; see "
+                "bcre_ca.largest_stable_step"
+            )
         deficit = 0.0 if smallest_slope is None else max(self.exchange_slope() - smallest_slope, 0)
         sink = self.gamma * deficit + self.kappa * max(largest_curvature, 0.0)
         return float(largest_step(self.parameters(), largest_R, sink))
@@ -220,6 +218,9 @@ class Rule:
         ``largest_R``, the layer that it was found for, decides which of the bounds is named.
         """
         if not self.dt <= largest * (1 + ROUNDING):
+            for term, bound in ((self.beta, SLOPE_DRIVEN_BOUND), (self.Gamma, THICK_BOUND)):
+                if term > 0:
+                    raise UnstableStep(self.dt, largest, bound)
             with_wave, without = (largest_step(self.parameters(), R, 0.0) for R in (largest_R, 0.0))
             by_wave = with_wave <= largest * (1 + ROUNDING) < without
             bound = (
@@ -243,28 +244,31 @@ class Rule:
         excess = theory.second_critical_excess(self.v, self.diffusion_left(), self.gamma, self.d)
         return self.exchange_slope() + excess
 
-    def effective_diffusion(self) -> float:
-        """D_eff of the modified equation, to first order in d and dt.
+    def effective_diffusion(self, R0: float = 0.0) -> float:
+        """D_eff of the modified equation, to first order in d and dt, under a layer R0.
 
-        D + (v d/2)(1 - v dt/d) for the upwind rule (:func:`bcre_ca.theory.effective_diffusion`); D
-        for the limited one, and for the calibrated one if dt is at least its calibrating step.
+        D + (J' d/2)(1 - J' dt/d), J' = v + Gamma R0, for the upwind rule
+        (:func:`bcre_ca.theory.effective_diffusion`); D for the limited one, and for the calibrated
+        one if dt is at least its calibrating step.
         """
         self._require_synchronous("D_eff")
         if self.scheme == "limited":
             return self.D
-        return theory.effective_diffusion(self.v, self.diffusion_left(), self.d, self.dt)
+        speed = self.v + self.Gamma * R0
+        return theory.effective_diffusion(speed, self.diffusion_left(), self.d, self.dt)
 
     def diffusion_left(self) -> float:
         """The diffusion in the rule's flux: D, or what calibration leaves of it."""
         return (self.coefficients().diffusion or 0.0) * self.d**2 / self.dt
 
     def effective_curvature(self, R0: float = 0.0) -> float:
-        """kappa_eff of the modified equation; kappa + (gamma d/2)(1 - gamma R0 dt/d) for the upwind
-        rule under a uniform rolling layer R0, kappa for the others."""
+        """kappa_eff of the modified equation; kappa + (gamma d/2)(1 - gamma X dt/d) for the upwind
+        rule under a uniform rolling layer R0, X = X(R0), and kappa for the others."""
         self._require_synchronous("kappa_eff")
         if self.scheme != "upwind":
             return self.kappa
-        return self.kappa + theory.effective_curvature(self.gamma, self.d, self.dt, R0)
+        X = float(exchanging(R0, self.coefficients().saturation))
+        return self.kappa + theory.effective_curvature(self.gamma, self.d, self.dt, X)
 
     def calibrating_step(self) -> float:
         """Smallest dt at which the calibrated rule reaches D_eff = D: (d/v)(1 - 2 D/(v d)), or 0.
@@ -283,9 +287,14 @@ class Rule:
                 f"order = {self.order!r}, scheme = {self.scheme!r}: {what} is defined for the "
                 "synchronous upwind rule only"
             )
+        for name in ("Gamma", "beta"):
+            if getattr(self, name) > 0:
+                raise ValueError(f"{name} = {getattr(self, name)!r}: {what} is defined for 0 only")
 
     def _require_synchronous(self, what: str) -> None:
         if self.order != "synchronous":
             raise ValueError(
                 f"order = {self.order!r}: {what} is known in closed form for 'synchronous' only"
             )
+        if self.beta > 0:
+            raise ValueError(f"beta = {self.beta!r}: {what} is known in closed form for 0 only")

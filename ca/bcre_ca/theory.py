@@ -15,7 +15,8 @@ import math
 
 from scipy.optimize import minimize_scalar
 
-from bcre_ca.coefficients import Parameters, largest_step
+from bcre_ca.coefficients import Parameters
+from bcre_ca.stability import largest_step
 
 
 def amplification(v: float, D: float, sigma: float, d: float, dt: float, z: complex) -> complex:

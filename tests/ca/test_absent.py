@@ -5,8 +5,9 @@ import math
 import numba
 import pytest
 
-from bcre_ca import absent, coefficients
-from bcre_ca.coefficients import Calibrated, InPlace, Limited, Upwind
+from bcre_ca import absent, coefficients, schemes
+from bcre_ca.schemes import Calibrated, InPlace, Limited, Upwind
+from bcre_ca.stability import largest_step
 
 ABSENT_OR_NOT = [(3.0, 2.0), (3.0, None), (None, 2.0), (None, None)]
 
@@ -32,7 +33,7 @@ def test_absent_terms_are_left_out(function, results):
 
 
 def test_scheme_chooses_the_same_body_in_python_and_compiled():
-    chosen = coefficients.by_scheme(
+    chosen = schemes.by_scheme(
         lambda x, scheme: x, {Limited: lambda x, scheme: 2 * x, InPlace: lambda x, scheme: -x}
     )
     compiled = numba.njit(lambda x, scheme: chosen(x, scheme))
@@ -44,4 +45,4 @@ def test_a_rule_with_every_term_is_the_rule_without_those_that_act_on_nothing():
     p = coefficients.Parameters(0.1, None, 0.2, 0.5, 1.0)
     every = coefficients.every_term(p)
     assert every[5:8] == (0.0, math.inf, 0.0)
-    assert coefficients.largest_step(every, 3.0, 0.1) == coefficients.largest_step(p, 3.0, 0.1)
+    assert largest_step(every, 3.0, 0.1) == largest_step(p, 3.0, 0.1)

@@ -14,7 +14,7 @@ from bcre_studies.sweeps.table import TABLE, read
 SPEC = """
 title = "Slope against pulse"
 scene = "figure1"
-models = ["ca", "height"]
+models = ["ca", "height alone"]
 observables = ["slope", "R", "top"]
 set = { until = 1000.0 }
 

@@ -11,11 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
 
-from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE
+from bcre_studies.models.registry import AUTOMATON, BCRE, EFFECTIVE, QUASI_STATIC
 from bcre_studies.models.run import frame_times
 from bcre_studies.on_line import animation, picture
 from bcre_studies.on_line.frames import POINTS, ROLLING, spread, thinned
-from bcre_studies.on_line.quantities import quantities
+from bcre_studies.on_line.quantities import REACH, quantities
 from bcre_studies.running.run import run_scene
 from bcre_studies.scenes.scene import load
 
@@ -84,6 +84,14 @@ def test_difference_counts_as_resolved_only_where_the_error_is_small(bcre):
     assert "unresolved.\nA scarp stands" in said(bcre, *steep, "--set", "v=0.1").out
 
 
+def test_slope_that_moves_without_a_pulse_has_no_reach():
+    scene = load("figure2", ["surface.0.slope=0.6", "rolling.0.amplitude=0.0"])
+    run = QUASI_STATIC.run(scene, frame_times(scene, 3))
+    found = {quantity.name: quantity for quantity in quantities([run])}
+    assert REACH not in found
+    assert found["change of h, mean"].values["quasi-static"] > 0
+
+
 # Ways of saying it
 
 
@@ -143,7 +151,7 @@ def test_figure_names_units_and_takes_any_title_for_text():
     run = AUTOMATON.run(scene, frame_times(scene, 2))
     text = picture.content([run]).decode()
     assert "$\\foo{ &lt;b&gt;" in text
-    assert "$R$ (\\$m)" in text
+    assert ">R ($m)<" in text
     assert run.to_xarray().outflow.attrs["units"] == "$m^2"
     assert run.to_dataframe().attrs["units"]["t"] == "s"
 

@@ -85,7 +85,7 @@ def as_python(text):
 
 
 def test_printed_rule_is_the_rule_of_the_automaton():
-    scene = load("figure2")
+    scene = load("figure2", ["cells=50"])
     rule = rule_of(scene)
     F_text, E_text, both = equations.automaton(rule, scene.material)
     R_text, h_text = re.findall(r"=\s(.*?)(?:\s{8}|$)", both)

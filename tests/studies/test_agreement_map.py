@@ -1,19 +1,32 @@
 """The map of agreement: closed forms against the models, rules that count right, and the report."""
 
 import math
+from concurrent.futures import Future
+from contextlib import nullcontext
 
 import numpy as np
 import pandas as pd
 import pytest
+from click.testing import CliRunner
 from hypothesis import given
 from hypothesis import strategies as st
+from matplotlib.figure import Figure
 
 from bcre_ca import Rule, evolve
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.registry import AUTOMATON
+from bcre_studies.sweeps import sweep
+from bcre_studies.sweeps.table import read
+from bcre_studies.sweeps.workers import ClusterError
 from bcre_studies.system.files import REPORTS
-from bcre_studies.validation.agreement_map import comparison, prediction, rules, study
-from bcre_studies.validation.agreement_map.measured import FAILED, TOLERANCE, compared, measure
+from bcre_studies.validation.agreement_map import comparison, fine, prediction, rules, study
+from bcre_studies.validation.agreement_map.measured import (
+    COLUMNS,
+    FAILED,
+    TOLERANCE,
+    compared,
+    measure,
+)
 from bcre_studies.validation.agreement_map.pulses import Pulse, drawn, scene_of
 from bcre_studies.validation.agreement_map.thresholds import (
     HALF_WIDTH,
@@ -146,3 +159,59 @@ def test_of_the_committed_scenes_none_was_used_both_to_find_and_to_test_a_rule(t
     assert len(scenes) == study.FITTED + study.TESTED
     assert len(scenes[scenes["seed"] == comparison.TEST_SEED]) >= 500
     assert not scenes.drop(columns="seed").duplicated().any()
+
+
+class Here:
+    """Workers that are this process."""
+
+    died = ()
+
+    def count(self):
+        return 1
+
+    def submit(self, function, *arguments):
+        future = Future()
+        future.set_result(function(*arguments))
+        return future
+
+
+def predicted_alone(pulse):
+    """Stands for runs of the models, which take long."""
+    if pulse.growth < -1.5:
+        raise ValueError("the automaton's step cannot be stable")
+    R = prediction.by_width_place_and_mass(pulse)
+    numbers = {name: R for name, kind in COLUMNS.items() if kind is float}
+    return numbers | {"verdict": str(prediction.by_moments(pulse, TOLERANCE))}
+
+
+def test_the_fine_map_is_a_sweep_that_ends_in_the_tables_of_the_study(
+    tables, tmp_path, monkeypatch
+):
+    numbers = tables["thresholds"].apply(lambda c: c if c.name == "model" else pd.to_numeric(c))
+    monkeypatch.setattr(sweep, "workers_of", lambda _: nullcontext(Here()))
+    monkeypatch.setattr(fine, "thresholds_of", lambda _: numbers)
+    monkeypatch.setattr(fine, "compared", predicted_alone)
+    monkeypatch.setattr(fine, "draw", lambda _: Figure())
+    ended = CliRunner().invoke(fine.main, ["--scenes", "60", "--out", str(tmp_path)])
+    assert ended.exit_code == 0, ended.output
+    scenes = read(tmp_path)
+    pulses = [*drawn(6, comparison.FIT_SEED), *drawn(54, comparison.TEST_SEED)]
+    assert scenes["peclet"].tolist() == [pulse.peclet for pulse in pulses]
+    refused = [pulse.growth < -1.5 for pulse in pulses]
+    assert (scenes["failure"] != "").tolist() == scenes["difference_R"].isna().tolist() == refused
+    written = pd.read_csv(tmp_path / "comparison.csv").set_index(["quantity", "case"])
+    assert set(written.index.get_level_values(0)) == set(tables["comparison"]["quantity"])
+    failed = written.loc[("share of scenes", FAILED), "count"]
+    assert failed == f"{sum(refused[6:])} of 54"
+    assert (tmp_path / "figure.svg").exists()
+
+
+def test_a_scheduler_that_does_not_answer_ends_the_fine_map_with_one_line(tmp_path, monkeypatch):
+    def refuse(_):
+        raise ClusterError("--scheduler = 'nowhere': no scheduler answers there")
+
+    monkeypatch.setattr(sweep, "workers_of", refuse)
+    arguments = ["--scenes", "20", "--scheduler", "nowhere", "--out", str(tmp_path)]
+    ended = CliRunner().invoke(fine.main, arguments)
+    assert ended.exit_code == 2
+    assert ended.output == "maps: --scheduler = 'nowhere': no scheduler answers there\n"

@@ -117,14 +117,45 @@ def test_big_ones_are_told_from_small_ones_by_the_gap_between_them():
     assert found["empty_decades"] == pytest.approx(math.log10(980))
 
 
-# What the claims hang on
-
-
 @pytest.fixture(scope="module")
 def tables():
     folder = REPORTS / "avalanche_statistics"
     names = ("comparison", "slopes", "sizes", "small")
     return {name: pd.read_csv(folder / f"{name}.csv") for name in names}
+
+
+PROTOTYPE = {
+    "L = 32, trigger 0.1": ((1.760, 0.088), (123.8, 3.5), (0.516, 0.020)),
+    "L = 64, trigger 0.1": ((1.109, 0.062), (89.9, 2.9), (0.404, 0.014)),
+    "L = 128, trigger 0.1": ((0.656, 0.037), (58.8, 3.2), (0.273, 0.018)),
+    "L = 64, trigger 1": ((1.095, 0.070), (61.5, 17.0), (0.235, 0.056)),
+    "L = 128, trigger 1": ((0.698, 0.043), (45.3, 2.0), (0.193, 0.011)),
+    "L = 128, trigger 10": ((0.470, 0.074), (24.7, 13.6), (0.090, 0.046)),
+}
+"""Start, gap and size of big avalanches, mean and standard deviation of one series each, from a
+separate implementation of the same drive: 1200 tilts with triggers at other random places."""
+
+
+@pytest.mark.parametrize("case", PROTOTYPE)
+def test_the_oscillation_is_that_of_a_separate_implementation(tables, case):
+    table = tables["comparison"]
+    (row,) = table[(table["drive"] == study.TILTED) & (table["case"] == case)].to_dict("records")
+    for name, (mean, sd) in zip(("start", "gap", "size"), PROTOTYPE[case], strict=True):
+        assert abs(row[name] - mean) <= sd
+        assert row[f"{name}_band"] <= 2 * sd
+
+
+def test_the_start_slope_falls_with_length_trigger_and_rate(tables):
+    drives = (Tilting(24.0, 24, 0.1, tilts, 1, tilt) for tilt, tilts in ((0.02, 300), (0.2, 60)))
+    starts = [summed_up(tilted(drive), 1.0)["start"] for drive in drives]
+    assert starts[0] < starts[1]
+    table = tables["comparison"].set_index(["drive", "case"])["start"]
+    assert table[study.OF_LENGTH].is_monotonic_decreasing
+    of_trigger = [table[study.TILTED, f"L = 128, trigger {t}"] for t in ("0.1", "10")]
+    assert table[study.OF_LENGTH, "L = 128, trigger 0.001"] > of_trigger[0] > of_trigger[1]
+
+
+# What the claims hang on
 
 
 def verdicts(tables):

@@ -11,11 +11,14 @@ from bcre_studies.models.aradian import thick_flow
 from bcre_studies.models.bcre import problem_of
 from bcre_studies.models.registry import (
     ARADIAN,
+    AUTOMATON,
     BCRE,
     HADELER_KUTTLER,
     HEIGHT_ONLY,
     HWA_KARDAR,
     QUASI_STATIC,
+    SLOPE_DRIVEN_AUTOMATON,
+    THICK_AUTOMATON,
 )
 from bcre_studies.observables.outcome import slope
 from bcre_studies.scenes.scene import SceneError, load
@@ -70,7 +73,11 @@ def test_bad_source_wall_or_gradient_is_refused_in_one_line(tmp_path, changes, m
         scene(tmp_path, **changes)
 
 
-@pytest.mark.parametrize("model", [BCRE, ARADIAN, HADELER_KUTTLER, HWA_KARDAR, QUASI_STATIC])
+ALL = [BCRE, ARADIAN, HADELER_KUTTLER, HWA_KARDAR, QUASI_STATIC]
+AUTOMATA = [AUTOMATON, THICK_AUTOMATON, SLOPE_DRIVEN_AUTOMATON]
+
+
+@pytest.mark.parametrize("model", [*ALL, *AUTOMATA], ids=lambda model: model.name)
 @pytest.mark.parametrize("ends", ["open", "wall"])
 def test_mass_counts_what_sources_pour(tmp_path, model, ends):
     poured = scene(tmp_path, **{"ends": ends, "until": 30.0, "source.0.until": 20.0})
@@ -85,13 +92,27 @@ def test_model_that_has_no_walls_or_sources_says_so(tmp_path):
         HEIGHT_ONLY.run(scene(tmp_path), [0.0, 1.0])
     with pytest.raises(SceneError, match=r"source: 1 given; must be none"):
         HEIGHT_ONLY.run(scene(tmp_path, ends="open"), [0.0, 1.0])
-    with pytest.raises(SceneError, match=r"material.Gamma = 0.5: must be 0"):
-        HADELER_KUTTLER.run(scene(tmp_path, Gamma=0.5), [0.0, 1.0])
+    for model in (HADELER_KUTTLER, SLOPE_DRIVEN_AUTOMATON):
+        with pytest.raises(SceneError, match=r"material.Gamma = 0.5: must be 0"):
+            model.run(scene(tmp_path, Gamma=0.5), [0.0, 1.0])
 
 
-def test_silo_of_a_scene_is_the_closed_form_in_hadeler_kuttler(tmp_path):
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"scheme": "limited"}, r"automaton.scheme = 'limited': must be 'upwind' with source = 1"),
+        ({"ends": "periodic", "Sc": 0.0}, "domain.ends = 'periodic': must be 'open' or 'wall'"),
+    ],
+)
+def test_automaton_refuses_what_its_schemes_and_ends_do_not_take(tmp_path, changes, message):
+    with pytest.raises(SceneError, match=message):
+        AUTOMATON.run(scene(tmp_path, **changes), [0.0, 1.0])
+
+
+@pytest.mark.parametrize("model", [HADELER_KUTTLER, SLOPE_DRIVEN_AUTOMATON], ids=["pde", "ca"])
+def test_silo_of_a_scene_is_the_closed_form_in_hadeler_kuttler(tmp_path, model):
     silo = scene(tmp_path)
-    run = HADELER_KUTTLER.run(silo, [0.0, silo.time.until], 100)
+    run = model.run(silo, [0.0, silo.time.until], 140)
     S = -np.diff(run.h[-1]) / run.d
     at = 0.95 * silo.domain.length
     material = hk.SlopeDriven(1.0, 0.35, 0.45)

@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 
 
 def period_drop(rule: Rule, cells: int, ends: Ends) -> float | None:
-    """Fall of the repose line over one period, Sc N d; None for open ends.
+    """Fall of the repose line over one period, Sc N d; None where the ends are not joined.
 
     Periodic ends join h up to this fall.
     """

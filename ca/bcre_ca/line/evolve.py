@@ -23,6 +23,7 @@ from bcre_ca.line import kernels
 from bcre_ca.line.pile import Pile, checked, line_of, require_ends
 from bcre_ca.line.recording import Recording
 from bcre_ca.line.refusal import raise_outgrown, require_stable
+from bcre_ca.line.sources import Source, stretches, supply_of
 from bcre_ca.rule import Ends, Rule
 
 Array = NDArray[np.float64]
@@ -46,7 +47,8 @@ def evolve(
     h, R: static and rolling layer, lengths, shape (N,). They are kept in single precision where
         both are float32, else in double.
     steps: number of steps, >= 0.
-    ends: ``"open"`` (closed top, open foot) or ``"periodic"`` (in h + Sc x and R).
+    ends: ``"open"`` (closed top, open foot), ``"wall"`` (closed top, a wall at the foot) or
+        ``"periodic"`` (in h + Sc x and R).
     frozen: a surface, shape (N,), whose slope S0 the exchange sees at every step instead of that
         of h: E = gamma R (S0 - Sc). For the synchronous upwind rule only.
 
@@ -151,8 +153,9 @@ def frames(
     ends: Ends = "open",
     step: float | Literal["auto"] = "auto",
     margin: float = MARGIN,
+    sources: Sequence[Source] = (),
 ) -> Iterator[Pile]:
-    """The pile at each of the ascending ``times``.
+    """The pile at each of the ascending ``times``, with what ``sources`` pour.
 
     The steps do not depend on the times: between two steps the layers are interpolated linearly,
     which keeps mass and R >= 0. The last step may end after the last time.
@@ -168,6 +171,8 @@ def frames(
         for a fixed step that cannot be stable at the start.
     FloatingPointError
         for a fixed step that the avalanche outgrew, naming cell, time and bound.
+    ValueError
+        for sources beyond the line or between joined ends.
     """
     require_kind("rule", rule, Rule)
     require_ends(ends)
@@ -178,10 +183,33 @@ def frames(
     fixed = 0.0
     if not (isinstance(step, str) and step == "auto"):
         rule = rule.with_step(step)
-        require_stable(pile.h, pile.R, rule, ends)
+        supply = supply_of(sources, pile.t, pile.h.size, rule.d)
+        require_stable(pile.h, pile.R, rule, ends, supply)
         fixed = float(rule.dt)
-    run = Recording(pile, rule, ends, fixed, margin, wanted[-1] if wanted else pile.t)
-    return (run.at(time) for time in wanted)
+    if not sources:
+        run = Recording(pile, rule, ends, fixed, margin, wanted[-1] if wanted else pile.t)
+        return (run.at(time) for time in wanted)
+    return _poured_on(pile, rule, wanted, ends, fixed, margin, sources)
+
+
+def _poured_on(
+    pile: Pile,
+    rule: Rule,
+    wanted: Sequence[float],
+    ends: Ends,
+    step: float,
+    margin: float,
+    sources: Sequence[Source],
+) -> Iterator[Pile]:
+    """:func:`frames` in stretches of time in which no source begins or ends."""
+    left = list(wanted)
+    for begin, end in stretches(sources, pile.t, left[-1] if left else pile.t):
+        supply = supply_of(sources, begin, pile.h.size, rule.d)
+        run = Recording(pile, rule, ends, step, margin, end, supply)
+        while left and (left[0] < end or end == wanted[-1]):
+            yield run.at(left.pop(0))
+        if left:
+            pile = run.at(end)
 
 
 def largest_stable_step(pile: Pile, rule: Rule, ends: Ends) -> float:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bcre_ca.gate import layers_of, numbers_of, require_kind, require_start
+from bcre_ca.rule import Ends
 
 Array = NDArray[np.float64]
 
@@ -50,8 +51,8 @@ class Pile:
 
 def require_ends(ends: Any) -> None:
     """Raise ValueError for unknown ends."""
-    if ends not in ("open", "periodic"):
-        raise ValueError(f"ends = {ends!r}: must be 'open' or 'periodic'")
+    if ends not in get_args(Ends):
+        raise ValueError(f"ends = {ends!r}: must be one of {get_args(Ends)}")
 
 
 def line_of(h: Any, R: Any) -> tuple[Array, Array]:

@@ -48,14 +48,23 @@ class Recording:
     step: a fixed step, or 0 for one that follows the bounds.
     margin: part of the largest stable step that the latter takes.
     last: the last time that will be asked for; no fixed step begins after it.
+    supply: what sources pour all the time, length/time, shape (N,).
     """
 
     def __init__(
-        self, pile: Pile, rule: Rule, ends: Ends, step: float, margin: float, last: float
+        self,
+        pile: Pile,
+        rule: Rule,
+        ends: Ends,
+        step: float,
+        margin: float,
+        last: float,
+        supply: Array | None = None,
     ) -> None:
-        self._start, self._rule, self._ends = pile, rule, ends
+        self._start, self._rule, self._ends, self._supply = pile, rule, ends, supply
         steps = _steps_to(last - pile.t, last, step)
-        self._course = Course(float(pile.t), step, steps, margin, rule.calibrating_step())
+        calibrating, longest = rule.calibrating_step(), float(last - pile.t)
+        self._course = Course(float(pile.t), step, steps, margin, calibrating, longest)
         self._clock, self._counts = np.zeros(4), np.zeros(6, np.int64)
         self._clock[[T, BEGAN]] = pile.t
         self._state = _copy(State(pile.h, pile.R, np.zeros(2)))
@@ -89,13 +98,21 @@ class Recording:
         """Step on to the time; False where nothing moves any more."""
         clock, counts, start, course = self._clock, self._counts, self._start, self._course
         ended = kernels.follow(
-            self._state, self._rule, self._ends, course, time, clock, counts, self._before
+            self._state,
+            self._rule,
+            self._ends,
+            course,
+            time,
+            clock,
+            counts,
+            self._before,
+            self._supply,
         )
         self._place, self._after = int(counts[BEFORE]), None
         if ended == OUTGROWN:
             steps = min(int(counts[STEPS]) + kernels.BLOCK, course.steps)
             rule = replace(self._rule, dt=course.step)
-            raise_outgrown(start.h, start.R, rule, steps, self._ends, start.t)
+            raise_outgrown(start.h, start.R, rule, steps, self._ends, start.t, self._supply)
         if ended == ENDLESS:
             raise FloatingPointError(
                 f"no step is short enough at t = {float(clock[T]):.6g}: the layers outgrow every "
@@ -124,7 +141,7 @@ class Recording:
 
     def _march(self, state: State, steps: int) -> None:
         rule = replace(self._rule, dt=float(self._clock[DT]))
-        kernels.march(state.h, state.R, rule, steps, self._ends, state.account)
+        kernels.march(state.h, state.R, rule, steps, self._ends, state.account, self._supply)
 
     def _pile(self, state: State, steps: int, time: float) -> Pile:
         start, counts = self._start, self._counts

@@ -102,13 +102,13 @@ def limited_slope(a: Any, b: Any) -> Any:
     """Mean of two neighbouring differences, at most twice the smaller one, and 0 where their signs
     differ (monotonized central, van Leer 1977)."""
     mean = 0.5 * (a + b)
-    rising = _larger(_smaller(2.0 * _smaller(a, b), mean), 0.0)
-    return rising + _smaller(_larger(2.0 * _larger(a, b), mean), 0.0)
+    rising = larger(smaller(2.0 * smaller(a, b), mean), 0.0)
+    return rising + smaller(larger(2.0 * larger(a, b), mean), 0.0)
 
 
 @register_jitable
 def _within(value: Any, highest: Any) -> Any:
-    return _larger(_smaller(value, highest), 0.0)
+    return larger(smaller(value, highest), 0.0)
 
 
 def _minimum(a, b):  # type: ignore[no-untyped-def]
@@ -130,5 +130,5 @@ def _maximum_of_cells(a, b):  # type: ignore[no-untyped-def]
     return lambda a, b: max(a, b)
 
 
-_smaller: Any = _minimum
-_larger: Any = _maximum
+smaller: Any = _minimum
+larger: Any = _maximum

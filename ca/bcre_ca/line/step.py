@@ -14,9 +14,11 @@ Open ends are a closed top, with no flux into cell 0, and an open foot: there R 
 and the surface goes on at the repose slope, so that only its curvature erodes the last cell.
 Periodic ends join R, and the height above the repose line h + Sc x.
 
-Calibration, curvature and saturation change what is eroded (:mod:`bcre_ca.exchange`) and the
-coefficients (:mod:`bcre_ca.coefficients`), not the step. The limited scheme has a step of its own
-(:mod:`bcre_ca.line.second_order`).
+Calibration, curvature and thick flows change what is eroded and carried (:mod:`bcre_ca.exchange`)
+and the coefficients (:mod:`bcre_ca.coefficients`), not the step. The limited scheme has a step of
+its own (:mod:`bcre_ca.line.second_order`), and so have lines with sources and walls
+(:mod:`bcre_ca.line.container`) and a layer that the slope drives
+(:mod:`bcre_ca.line.slope_driven`).
 """
 
 from __future__ import annotations
@@ -24,18 +26,25 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from bcre_ca.exchange import carried, deposit_thin, eroded, eroded_at_foot
+from bcre_ca.coefficients import fold
+from bcre_ca.exchange import carried, deposit_thin, eroded, eroded_at_foot, leaving
 from bcre_ca.gate import require_kind
-from bcre_ca.line import second_order
+from bcre_ca.line import container, second_order, slope_driven
 from bcre_ca.line.drops import drops, period_drop
 from bcre_ca.line.pile import line_of, require_ends
 from bcre_ca.rule import Ends, Rule
+from bcre_ca.schemes import InContainer, SlopeDriven
 
 Array = NDArray[np.float64]
 
 
 def step(
-    h: Array, R: Array, rule: Rule, ends: Ends = "open", frozen: Array | None = None
+    h: Array,
+    R: Array,
+    rule: Rule,
+    ends: Ends = "open",
+    frozen: Array | None = None,
+    supply: Array | None = None,
 ) -> tuple[Array, Array, float]:
     """One step of the rule, stable or not.
 
@@ -43,8 +52,9 @@ def step(
     ----------
     h, R: static and rolling layer at the N cell centres, lengths, shape (N,).
     rule: the automaton's parameters.
-    ends: ``"open"`` or ``"periodic"``.
+    ends: ``"open"``, ``"wall"`` or ``"periodic"``.
     frozen: a surface whose slope the exchange sees instead of that of h; synchronous upwind only.
+    supply: what sources pour into each cell, length/time, shape (N,).
 
     Returns
     -------
@@ -66,6 +76,11 @@ def step(
     if frozen is not None:
         rule.require_upwind("a frozen slope")
         frozen, _ = line_of(frozen, R)
+    p = container.parameters_of(rule, ends, h.size, supply)
+    if isinstance(p.scheme, SlopeDriven):
+        return slope_driven.step(h, R, fold(p, float(rule.dt)))
+    if isinstance(p.scheme, InContainer):
+        return container.step(h, R, fold(p, float(rule.dt)))
     if rule.scheme == "limited":
         return second_order.step(h, R, rule.coefficients(), period_drop(rule, h.size, ends))
     if rule.order == "synchronous":
@@ -83,7 +98,7 @@ def _synchronous(
     flux_in = np.append(flux_out[-1], flux_out[:-1])
     outflow = 0.0
     if ends == "open":
-        flux_in[0], flux_out[-1] = 0.0, K.courant * R[-1]
+        flux_in[0], flux_out[-1] = 0.0, leaving(R[-1], K)
         exchange[-1] = eroded_at_foot(R[-1], above[-1], K)
         outflow = float(flux_out[-1])
     h, R = deposit_thin(h - exchange, R + ((flux_in - flux_out) + exchange), R, K.dry, K.emptying)

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from bcre_ca.plane import facets, split4, theory, tilted
 from bcre_ca.plane.setting import Plane
-from bcre_ca.rule import ROUNDING, UnstableStep
+from bcre_ca.rule import ROUNDING
+from bcre_ca.unstable import UnstableStep
 
 Array = NDArray[np.float64]
 

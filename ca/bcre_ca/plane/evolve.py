@@ -15,7 +15,8 @@ from bcre_ca.plane.layers import Sand
 from bcre_ca.plane.run import BLOCK, Run
 from bcre_ca.plane.setting import Plane
 from bcre_ca.plane.sources import clock_of
-from bcre_ca.rule import ROUNDING, UnstableStep
+from bcre_ca.rule import ROUNDING
+from bcre_ca.unstable import UnstableStep
 
 Array = NDArray[np.float64]
 

@@ -19,6 +19,10 @@ Ends = Literal["open", "closed", "periodic"]
 Sides = Literal["closed", "periodic"]
 
 
+ON_PLANE = {"order": "synchronous", "scheme": "upwind", "kappa": 0.0, "Gamma": 0.0, "beta": 0.0}
+"""What a rule must have on a plane."""
+
+
 @dataclass(frozen=True, eq=False)
 class Plane:
     """Cells (i, j) of side d: i counts along x, downhill on a tilted plane, and j across.
@@ -57,7 +61,7 @@ class Plane:
             value = getattr(self, name)
             if value not in get_args(allowed):
                 raise ValueError(f"{name} = {value!r}: must be one of {get_args(allowed)}")
-        for name, needed in (("order", "synchronous"), ("scheme", "upwind"), ("kappa", 0.0)):
+        for name, needed in ON_PLANE.items():
             value = getattr(self.rule, name)
             if value != needed:
                 raise ValueError(f"{name} = {value!r}: must be {needed!r} on a plane")

@@ -6,7 +6,11 @@ In u = h + Sc x, so that S = Sc - u_x,
 
 * u on a face leans downhill; which way that is, the four cells around say. The cell values J =
   beta R S lean uphill: those > 0 to one side, those < 0 to the other, so that nothing crosses a
-  ridge. The values are those of :func:`bcre_pde.stencils.face_value`.
+  ridge. Both are the fifth-order value, or the cell's own where the layer thins out to
+  :data:`THIN` of itself within the stencil, where R >= 0 counts, and next to open ends; in between
+  a part of the one. A limiter for each by itself, as in BCRE, would let waves of a few cells grow:
+  the slope drives R, R erodes the slope, and where the one is limited and the other is not such
+  waves grow at a rate of order 1/dx.
 * R_x on a face is central, of order 6.
 * Beyond an end stand ghost cells: mirrored, wrapped, or as the end asks for.
 """
@@ -16,9 +20,11 @@ from __future__ import annotations
 import numba
 
 from bcre_pde.kept import SOURCES, kept
-from bcre_pde.stencils import GHOSTS, face_value
+from bcre_pde.stencils import GHOSTS
 
 JOINED, OPEN, WALLED = 0, 1, 2
+
+THIN = 0.1
 
 _compiled = numba.njit(error_model="numpy")
 
@@ -58,28 +64,51 @@ def _falls(u, f, rise):  # type: ignore[no-untyped-def]
 
 
 @_compiled
-def _seen_from_below(u, f, rise):  # type: ignore[no-untyped-def]
-    if _falls(u, f, rise):
-        return face_value(u[f + 5], u[f + 4], u[f + 3], u[f + 2], u[f + 1])
-    return face_value(u[f], u[f + 1], u[f + 2], u[f + 3], u[f + 4])
+def _part(R, f, cells, ends):  # type: ignore[no-untyped-def]
+    """Part of the fifth-order value on face f: 0 next to open ends and where R, with ghosts, thins
+    out to THIN of itself, 1 where it stays above twice that."""
+    if ends == OPEN and (f < GHOSTS or f > cells - GHOSTS):
+        return 0.0
+    thinnest = min(R[f], R[f + 1], R[f + 2], R[f + 3], R[f + 4], R[f + 5])
+    thickest = max(R[f], R[f + 1], R[f + 2], R[f + 3], R[f + 4], R[f + 5])
+    if thinnest <= THIN * thickest:
+        return 0.0
+    return min(thinnest / (THIN * thickest) - 1.0, 1.0)
 
 
 @_compiled
-def _carried(J, f):  # type: ignore[no-untyped-def]
+def _face_value(upwind_3, upwind_2, upwind, downwind, downwind_2, part):  # type: ignore[no-untyped-def]
+    beyond = 2 * upwind_3 - 13 * upwind_2 - 13 * upwind + 27 * downwind - 3 * downwind_2
+    return upwind + part / 60 * beyond
+
+
+@_compiled
+def _seen_from_below(u, f, rise, part):  # type: ignore[no-untyped-def]
+    # Of a single cell h, not u, is carried to the face: on the two sides of a pit it is the same.
+    level = 0.5 * (1.0 - part) * rise
+    if _falls(u, f, rise):
+        return _face_value(u[f + 5], u[f + 4], u[f + 3], u[f + 2], u[f + 1], part) - level
+    return _face_value(u[f], u[f + 1], u[f + 2], u[f + 3], u[f + 4], part) + level
+
+
+@_compiled
+def _carried(J, f, part):  # type: ignore[no-untyped-def]
     """What moves to the right from the left of face f, and to the left from its right."""
-    rightwards = face_value(
+    rightwards = _face_value(
         max(J[f], 0.0),
         max(J[f + 1], 0.0),
         max(J[f + 2], 0.0),
         max(J[f + 3], 0.0),
         max(J[f + 4], 0.0),
+        part,
     )
-    leftwards = face_value(
+    leftwards = _face_value(
         min(J[f + 5], 0.0),
         min(J[f + 4], 0.0),
         min(J[f + 3], 0.0),
         min(J[f + 2], 0.0),
         min(J[f + 1], 0.0),
+        part,
     )
     return rightwards + leftwards
 
@@ -110,7 +139,7 @@ def entry(sources: str):  # type: ignore[no-untyped-def]
         _extend(u, cells, ends, rise, state[2, 0])
         _extend_layer(R, cells, ends, 1.0)
         for f in range(cells + 1):
-            u_face[f] = _seen_from_below(u, f, rise)
+            u_face[f] = _seen_from_below(u, f, rise, _part(R, f, cells, ends))
         for i in range(cells):
             slope = Sc - (u_face[i + 1] - u_face[i]) / dx
             J[i + GHOSTS] = beta * state[1, i] * slope
@@ -122,7 +151,7 @@ def entry(sources: str):  # type: ignore[no-untyped-def]
         for f in range(cells + 1):
             steepness = 245 * (R[f + 3] - R[f + 2]) - 25 * (R[f + 4] - R[f + 1])
             steepness += 2 * (R[f + 5] - R[f])
-            flux[f] = _carried(J, f) - D / (180 * dx) * steepness
+            flux[f] = _carried(J, f, _part(R, f, cells, ends)) - D / (180 * dx) * steepness
         if ends != JOINED:
             flux[0] = 0.0
         if ends == WALLED:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -20,13 +20,37 @@ MOST_STEPS = 10**9
 
 
 class Automaton(Adapter):
-    """The automaton as the scene describes it; given a ``scheme``, that with its largest step."""
+    """The automaton of the scene's own coefficients, or of those of ``of(scene)``.
 
-    ends = ("open", "periodic")
-    admits = ()
+    Given a ``scheme``, it is that with its largest step.
+    """
 
-    def __init__(self, scheme: str = "") -> None:
+    def __init__(self, scheme: str = "", of: Callable[[Scene], Scene] | None = None) -> None:
         self._scheme = scheme
+        self._of = of or (lambda scene: scene)
+
+    def rule(self, scene: Scene) -> bcre_ca.Rule:
+        """The rule of this model's automaton, as :func:`rule_of`."""
+        return rule_of(self._of(scene))
+
+    def require_admitted(self, scene: Scene) -> None:
+        super().require_admitted(scene)
+        scheme = self._scheme or scene.automaton.scheme
+        asked = {
+            "source": len(scene.source),
+            "domain.ends": scene.domain.ends if scene.domain.ends == "wall" else None,
+            "material.Gamma": scene.material.Gamma,
+        }
+        for key, value in asked.items():
+            if value and scheme != "upwind":
+                raise SceneError(
+                    f"automaton.scheme = {scheme!r}: must be 'upwind' with {key} = {value!r}"
+                )
+        if scene.source and scene.domain.ends == "periodic":
+            raise SceneError(
+                f"domain.ends = {scene.domain.ends!r}: must be 'open' or 'wall' where the "
+                "automaton has sources"
+            )
 
     def on(self, scene: Scene, cells: int) -> Scene:
         if not self._scheme:
@@ -50,11 +74,15 @@ class Automaton(Adapter):
         if cells or self._scheme:
             scene = self.on(scene, cells or scene.domain.cells)
         start = bcre_ca.Pile(*scene.initial(scene.centres()))
-        rule, ends, step = rule_of(scene), scene.domain.ends, scene.time.step
+        rule, ends, step = self.rule(scene), scene.domain.ends, scene.time.step
+        sources = [
+            bcre_ca.Source(source.rate, source.place, source.width, source.start, source.until)
+            for source in scene.source
+        ]
         piles: list[bcre_ca.Pile] = []
         began = time.perf_counter()
         with compiling() as compiled_s:
-            for pile in bcre_ca.frames(start, rule, times, ends, step):
+            for pile in bcre_ca.frames(start, rule, times, ends, step, sources=sources):
                 piles.append(pile)
                 if stop is not None and stop(run_of(scene, piles)):
                     break
@@ -70,7 +98,7 @@ class Automaton(Adapter):
 
     def require_runnable(self, scene: Scene) -> None:
         thickest = thickest_layer(scene)  # distinguishes an overflow from an unstable step
-        rule = rule_of(scene)
+        rule = self.rule(scene)
         steps = scene.time.until / rule.dt
         if scene.time.step == "auto":
             steps = max(steps, scene.time.until * scene.material.gamma * thickest / scene.d)
@@ -109,14 +137,20 @@ def rule_of(scene: Scene) -> bcre_ca.Rule:
         material.gamma,
         material.Sc,
         scene.d,
-        dt=1.0 if scene.time.step == "auto" else scene.time.step,
+        dt=1.0,
         scheme=automaton.scheme,
         kappa=0.0 if automaton.scheme == "upwind" else material.kappa,
         v_up=math.inf if material.v_up is None else material.v_up,
         dry=automaton.dry,
+        Gamma=material.Gamma,
     )
+    return stepped(rule, scene)
+
+
+def stepped(rule: bcre_ca.Rule, scene: Scene) -> bcre_ca.Rule:
+    """The rule with the scene's step, or with its largest step at the start."""
     if scene.time.step != "auto":
-        return rule
+        return replace(rule, dt=scene.time.step)
     pile = bcre_ca.Pile(*scene.initial(scene.centres()))
     bound = bcre_ca.largest_stable_step(pile, rule, scene.domain.ends)
     return replace(rule, dt=min(bcre_ca.MARGIN * bound, scene.time.until))

@@ -127,6 +127,19 @@ def _hadeler_kuttler() -> Adapter:
     return HadelerKuttler()
 
 
+def _thick_automaton() -> Adapter:
+    from bcre_studies.models.aradian import thick_flow
+    from bcre_studies.models.automaton import Automaton
+
+    return Automaton(of=thick_flow)
+
+
+def _slope_driven_automaton() -> Adapter:
+    from bcre_studies.models.hadeler_kuttler import SlopeDrivenAutomaton
+
+    return SlopeDrivenAutomaton()
+
+
 def _hwa_kardar() -> Adapter:
     from bcre_studies.models.hwa_kardar import HwaKardar
 
@@ -167,6 +180,17 @@ ARADIAN = Model("aradian", _aradian, "Aradian et al.", "aradian", "#7a4fa3", "p"
 HADELER_KUTTLER = Model(
     "hadeler-kuttler", _hadeler_kuttler, "Hadeler-Kuttler", "hadeler_kuttler", "#a8324a", "X"
 )
+THICK_AUTOMATON = Model(
+    "ca aradian", _thick_automaton, "automaton of Aradian et al.", "ca_aradian", "#b48ad1", "<"
+)
+SLOPE_DRIVEN_AUTOMATON = Model(
+    "ca hadeler-kuttler",
+    _slope_driven_automaton,
+    "automaton of Hadeler-Kuttler",
+    "ca_hadeler_kuttler",
+    "#de7f90",
+    ">",
+)
 HWA_KARDAR = Model("hwa-kardar", _hwa_kardar, "Hwa-Kardar", "hwa_kardar", "#6b6b6b", "v")
 QUASI_STATIC = Model(
     "quasi-static", _quasi_static, "Prigozhin-Zaltzman", "quasi_static", "#0f7f8c", "P"
@@ -180,7 +204,9 @@ MODELS = {
         EFFECTIVE,
         HEIGHT_ONLY,
         ARADIAN,
+        THICK_AUTOMATON,
         HADELER_KUTTLER,
+        SLOPE_DRIVEN_AUTOMATON,
         HWA_KARDAR,
         QUASI_STATIC,
     )

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from bcre_studies.models.registry import MODELS
 from bcre_studies.models.run import Run
 from bcre_studies.on_line.frames import (
+    Layer,
     axis_label,
     layers_of,
     spread,
@@ -50,20 +51,15 @@ def animation(runs: Sequence[Run], frames: Sequence[int]) -> FuncAnimation:
     panels: Any = figure.subplots(1, 2)
     lines = []
     for axes, layer in zip(panels, layers_of(runs), strict=True):
-        for run in runs:
-            for frame in frames:  # what the limits must hold
-                axes.plot(*thinned(run.x, layer.of(run, frame)), alpha=0.0)
-        limits = axes.get_ylim()
-        axes.clear()
         axes.plot(*thinned(runs[0].x, layer.of(runs[0], 0)), **style.START)
         for run in runs:
             label = MODELS[run.model].label
             (line,) = axes.plot([], [], label=label, **MODELS[run.model].line)
             lines.append((line, layer, run))
-        axes.set(xlim=(0, runs[0].scene.domain.length), ylim=limits)
+        axes.set(xlim=(0, runs[0].scene.domain.length), ylim=_limits(layer, runs, frames))
         axes.set_title(layer.name, loc="left")
-        axes.set_ylabel(axis_label(layer.symbol, runs[0]))
-        axes.set_xlabel(axis_label("$x$, downhill", runs[0], "x"))
+        axes.set_ylabel(axis_label(layer.symbol, runs[0]), parse_math=False)
+        axes.set_xlabel(axis_label("x, downhill", runs[0], "x"), parse_math=False)
     title = figure.suptitle("", fontsize=10, x=0.01, ha="left", parse_math=False)
     style.legend(figure, [MODELS[run.model] for run in runs], start=True)
 
@@ -74,3 +70,11 @@ def animation(runs: Sequence[Run], frames: Sequence[int]) -> FuncAnimation:
         return [line for line, _, _ in lines]
 
     return FuncAnimation(figure, show, frames=frames, init_func=lambda: [], blit=False)
+
+
+def _limits(layer: Layer, runs: Sequence[Run], frames: Sequence[int]) -> tuple[float, float]:
+    """What holds the layer in all frames of all runs, with some room."""
+    shown = [layer.of(run, frame) for run in runs for frame in frames]
+    low, high = min(float(row.min()) for row in shown), max(float(row.max()) for row in shown)
+    room = 0.05 * (high - low) or 1.0
+    return low - room, high + room

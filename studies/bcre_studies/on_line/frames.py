@@ -46,9 +46,9 @@ class Layer:
         return one.sample(one.x, self.field, frame) - other.sample(one.x, self.field, frame)
 
 
-SURFACE = Layer("u", "static layer above the repose line", r"$h - S_c\,(L - x)$")
-CHANGE = Layer("u", "change of the static layer", "$h - h(t = 0)$", since_start=True)
-ROLLING = Layer("R", "rolling layer", "$R$")
+SURFACE = Layer("u", "static layer above the repose line", "h - Sc (L - x)")
+CHANGE = Layer("u", "change of the static layer", "h - h(t = 0)", since_start=True)
+ROLLING = Layer("R", "rolling layer", "R")
 
 VISIBLE = 0.02
 """A change of the surface by this part of its range can be seen in a picture of the surface."""
@@ -87,8 +87,7 @@ def time_unit(run: Run) -> str:
 
 
 def axis_label(symbol: str, run: Run, quantity: str = "h") -> str:
-    """The symbol with its unit, where the scene names one."""
+    """The symbol with its unit, where the scene names one; a plain text without mathematics."""
     if run.scene.units is None:
         return symbol
-    unit = run.units[quantity].replace("$", r"\$")
-    return f"{symbol} ({unit})"
+    return f"{symbol} ({run.units[quantity]})"

@@ -57,7 +57,7 @@ def picture(runs: Sequence[Run]) -> Figure:
         _draw_layer(column[0], layer, runs, frames)
         if compared:
             _draw_difference(column[1], layer, runs, frames)
-        column[-1].set_xlabel(axis_label("$x$, downhill", runs[0], "x"))
+        column[-1].set_xlabel(axis_label("x, downhill", runs[0], "x"), parse_math=False)
     _explain(figure, runs, frames)
     return figure
 
@@ -69,7 +69,7 @@ def _draw_layer(axes: Axes, layer: Layer, runs: Sequence[Run], frames: list[int]
             look = MODELS[run.model].line | {"color": _shade(run.model, frame, frames)}
             axes.plot(*thinned(run.x, layer.of(run, frame)), **look)
     axes.set_title(layer.name, loc="left")
-    axes.set_ylabel(axis_label(layer.symbol, runs[0]))
+    axes.set_ylabel(axis_label(layer.symbol, runs[0]), parse_math=False)
     axes.margins(x=0)
     if layer is ROLLING and not any(run.R.any() for run in runs):
         axes.text(0.5, 0.6, "none in this run", transform=axes.transAxes, ha="center", color="0.4")
@@ -85,7 +85,7 @@ def _draw_difference(axes: Axes, layer: Layer, runs: Sequence[Run], frames: list
     if math.isfinite(error):
         axes.axhspan(-error, error, color=MODELS[other.model].color, alpha=0.18, linewidth=0)
     axes.set_title(f"{MODELS[one.model].label} less {MODELS[other.model].label}", loc="left")
-    axes.set_ylabel(axis_label("difference", runs[0]))
+    axes.set_ylabel(axis_label("difference", runs[0]), parse_math=False)
 
 
 def own_error(run: Run, layer: Layer) -> float:

@@ -80,7 +80,8 @@ def _measures(scene: Scene, cells: int) -> list[tuple[str, str, Measure, bool]]:
         measures.append(("slope S at the end", "", named.slope, False))
         if "front" in named.posed(scene):
             measures.append((FRONT, length, _front, False))
-            measures.append((REACH, length, named.reach, False))
+            if scene.initial(scene.centres())[1].any():  # else there is no pulse to reach from
+                measures.append((REACH, length, named.reach, False))
     return measures
 
 

@@ -69,7 +69,8 @@ def verdict(runs: Sequence[Run], layer: Quantity) -> str:
     one, other = (MODELS[run.model].text for run in runs)
     text = f"R of the {one} is {_percent(layer.apart, 2)} from that of {other}"
     if not math.isfinite(layer.error):
-        return f"{text}, whose own error is not known: too few grids can hold this scene."
+        few = ": too few grids can hold this scene" if len(runs[-1].coarser) < 2 else ""
+        return f"{text}, whose own error is not known{few}."
     text += f", whose own error is {_percent(layer.error, 1)}: "
     if layer.error <= SHARE * layer.apart or layer.error <= SHARE * SHARE:
         return text + "resolved."

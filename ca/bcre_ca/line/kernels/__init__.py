@@ -1,8 +1,9 @@
 """The compiled automaton: many steps a call, equal to :mod:`bcre_ca.line.step` to the bit.
 
 The kernels are ``sweep`` for the upwind and the calibrated scheme, ``second_order`` for the limited
-one, ``in_place`` for the in-place readings and ``frozen`` for a frozen slope. ``driver`` decides
-where they run, ``bounds`` how long a step may be, and ``following`` leads them to a wanted time.
+one, ``in_place`` for the in-place readings, ``container`` for lines with sources and walls, and
+``frozen`` for a frozen slope. ``driver`` decides where they run, ``bounds`` how long a step may be,
+and ``following`` leads them to a wanted time.
 Their expressions are those of the plain step, in the same order, without fused or reassociated
 arithmetic.
 """
@@ -17,8 +18,9 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from bcre_ca.coefficients import Coefficients, Parameters, every_term, row_of
+from bcre_ca.coefficients import Coefficients, Parameters, every_term, fold, row_of
 from bcre_ca.kept import kept
+from bcre_ca.line.container import parameters_of
 from bcre_ca.line.drops import drops, period_drop
 from bcre_ca.line.kernels import bounds, driver, following
 from bcre_ca.line.kernels.following import Course, State
@@ -42,29 +44,44 @@ _follow = kept(following.follow)
 _stable_steps = kept(bounds.stable_steps)
 
 
-def march(h: Array, R: Array, rule: Rule, steps: int, ends: Ends, account: Array) -> None:
+def march(
+    h: Array,
+    R: Array,
+    rule: Rule,
+    steps: int,
+    ends: Ends,
+    account: Array,
+    supply: Array | None = None,
+) -> None:
     """Take ``steps`` steps in place, stable or not.
 
     h and R have the shape (N,). ``account``, shape (2,), takes what left through the foot (times d:
-    an area), and its rounding error.
+    an area), and its rounding error. ``supply``, length/time, shape (N,), is what sources pour.
     """
     for part in _parts(steps, h.size):
-        _march_piles(h[None], R[None], [rule], ONE, part, ends, account[None], is_watched=False)
+        _march_piles(h[None], R[None], [rule], ONE, part, ends, account[None], False, supply)
 
 
-def march_watched(h: Array, R: Array, rules: Sequence[Rule], steps: int, ends: Ends) -> Flags:
+def march_watched(
+    h: Array,
+    R: Array,
+    rules: Sequence[Rule],
+    steps: int,
+    ends: Ends,
+    supply: Array | None = None,
+) -> Flags:
     """Take ``steps`` steps of many piles in place, shape (piles, N), a rule each.
 
     They are shared out among the processors. Returns for which piles dt has been stable after every
     :data:`BLOCK` steps; the others stop where it was not.
     """
     accounts, has_outlasted = np.zeros((len(h), 2)), np.ones(len(h), bool)
-    terms = [_terms(rule.parameters()) for rule in rules]
+    terms = [_terms(parameters_of(rule, ends, h.shape[1], supply)) for rule in rules]
     for part in _parts(steps, h.shape[1]):
 
         def march_some(piles: Piles, part: int = part) -> None:
             own, account = [rules[i] for i in piles], accounts[piles]
-            found = _march_piles(h, R, own, piles, part, ends, account, is_watched=True)
+            found = _march_piles(h, R, own, piles, part, ends, account, True, supply)
             has_outlasted[piles], accounts[piles] = found, account
 
         _shared_out(march_some, terms, max(AT_ONCE // max(h.shape[1] * part, 1), 1))
@@ -90,12 +107,14 @@ def follow(
     clock: Array,
     counts: NDArray[np.int64],
     middle: State,
+    supply: Array | None = None,
 ) -> int:
     """Change the state until the time ``until`` lies in the last block of steps, or behind it.
 
     See :func:`bcre_ca.line.kernels.following.follow`; returns how it ended.
     """
-    p, fall = rule.parameters(), _fall(rule, state.h, ends)
+    p = parameters_of(rule, ends, state.h.size, supply, course.longest)
+    fall = _fall(rule, state.h, ends)
     blocks = max(AT_ONCE // (state.h.size * BLOCK), 1)
     ended = following.UNDERWAY
     while ended == following.UNDERWAY:
@@ -103,15 +122,17 @@ def follow(
     return ended
 
 
-def stable_step(h: Array, R: Array, rule: Rule, ends: Ends) -> float:
+def stable_step(h: Array, R: Array, rule: Rule, ends: Ends, supply: Array | None = None) -> float:
     """The largest stable step for these layers; NaN where they are not finite."""
-    every, falls = every_term(rule.parameters()), _falls([rule], h, ends)
+    every = every_term(parameters_of(rule, ends, h.size, supply))
+    falls = _falls([rule], h, ends)
     return float(_bounds_of(h[None], R[None], [every], ONE, falls)[0])
 
 
 def stable_steps(h: Array, R: Array, rules: Sequence[Rule], ends: Ends) -> Array:
     """:func:`stable_step` of many piles, shape (piles, N), a rule each; shape (piles,)."""
-    largest, parameters = np.empty(len(rules)), [rule.parameters() for rule in rules]
+    largest = np.empty(len(rules))
+    parameters = [parameters_of(rule, ends, h.shape[1]) for rule in rules]
 
     def bound_some(piles: Piles) -> None:
         every = [every_term(parameters[i]) for i in piles]
@@ -160,7 +181,8 @@ def _terms(p: Parameters) -> tuple[Any, ...]:
 
 def _scheme(p: Parameters) -> tuple[Any, ...]:
     """With its type: schemes without a field are equal as tuples."""
-    return type(p.scheme), p.scheme
+    fields = (field for field in p.scheme if not isinstance(field, np.ndarray))
+    return type(p.scheme), *fields
 
 
 def stepped_cells(R: Array) -> int:
@@ -181,11 +203,13 @@ def _march_piles(
     ends: Ends,
     accounts: Array,
     is_watched: bool,
+    supply: Array | None,
 ) -> Flags:
     """March some of the piles, whose rules have the same terms."""
-    coefficients = [rule.coefficients() for rule in rules]
+    of_rules = [parameters_of(rule, ends, h.shape[1], supply) for rule in rules]
+    coefficients = [fold(p, float(rule.dt)) for p, rule in zip(of_rules, rules, strict=True)]
     rows = np.array([row_of(K) for K in coefficients], h.dtype)
-    parameters = np.array([row_of(every_term(rule.parameters())) for rule in rules])
+    parameters = np.array([row_of(every_term(p)) for p in of_rules])
     K, dts = _as_type(coefficients[0], h.dtype), np.array([float(rule.dt) for rule in rules])
     falls, has_outlasted = _falls(rules, h, ends), np.empty(piles.size, bool)
     _march(h, R, piles, rows, K, parameters, dts, steps, accounts, falls, is_watched, has_outlasted)
@@ -199,14 +223,14 @@ def _parts(steps: int, cells: int) -> list[int]:
 
 
 def _fall(rule: Rule, h: Array, ends: Ends) -> Any:
-    """Of the repose line over the period, in the number type of h; None for open ends."""
+    """Of the repose line over the period, in the number type of h; None where none is joined."""
     fall = period_drop(rule, h.shape[-1], ends)
     return None if fall is None else h.dtype.type(fall)
 
 
 def _falls(rules: Sequence[Rule], h: Array, ends: Ends) -> Any:
-    """:func:`_fall` of each rule; None for open ends."""
-    if ends == "open":
+    """:func:`_fall` of each rule; None where no ends are joined."""
+    if ends != "periodic":
         return None
     return np.array([_fall(rule, h, ends) for rule in rules], h.dtype)
 

@@ -8,8 +8,11 @@ import numba
 import numpy as np
 from numba.extending import register_jitable
 
-from bcre_ca.coefficients import largest_step, parameters_in
+from bcre_ca.coefficients import parameters_in
+from bcre_ca.line.kernels import container
 from bcre_ca.rule import ROUNDING
+from bcre_ca.schemes import InContainer, SlopeDriven, by_scheme
+from bcre_ca.stability import largest_step
 
 INFINITE = np.float64(np.inf).view(np.int64)
 
@@ -86,14 +89,33 @@ def limits(h, R, p, period_drop, foot):  # type: ignore[no-untyped-def]
     return largest, sink
 
 
-@numba.njit(error_model="numpy")
-def limits_within(h, R, p, period_drop, a, b, whole):  # type: ignore[no-untyped-def]
-    """The same for the cells [a, b) of a pile, or the whole of it."""
+def _limits_within(h, R, p, period_drop, a, b, whole, scheme):  # type: ignore[no-untyped-def]
     if period_drop is None:
         return limits(h[a:b], R[a:b], p, None, b == h.size)
     if whole:
         return limits(h, R, p, period_drop, True)
     return limits(h[a:b], R[a:b], p, None, False)
+
+
+def _limits_in_container(h, R, p, period_drop, a, b, whole, scheme):  # type: ignore[no-untyped-def]
+    largest, sink = limits(h, R, p, None, True)
+    return largest, max(sink, container.sink_at_wall(h, p))
+
+
+def _limits_slope_driven(h, R, p, period_drop, a, b, whole, scheme):  # type: ignore[no-untyped-def]
+    largest, _ = limits(h, R, p, None, True)
+    return largest, container.sink_on_slopes(h, p)
+
+
+_limits = by_scheme(
+    _limits_within, {InContainer: _limits_in_container, SlopeDriven: _limits_slope_driven}
+)
+
+
+@numba.njit(error_model="numpy")
+def limits_within(h, R, p, period_drop, a, b, whole):  # type: ignore[no-untyped-def]
+    """The same for the cells [a, b) of a pile, or the whole of it."""
+    return _limits(h, R, p, period_drop, a, b, whole, p.scheme)
 
 
 @numba.njit(error_model="numpy")
@@ -111,7 +133,9 @@ def stable_steps(h, R, piles, rows, scheme, largest, period_drops):  # type: ign
     """
     for j in range(piles.size):
         p = parameters_in(rows[j], scheme)
-        layer, sink = limits(h[piles[j]], R[piles[j]], p, drop_of(period_drops, j), True)
+        own = h[piles[j]], R[piles[j]]
+        drop = drop_of(period_drops, j)
+        layer, sink = limits_within(own[0], own[1], p, drop, 0, h.shape[1], True)
         largest[j] = stable_step(p, layer, sink)
 
 

@@ -12,10 +12,11 @@ from __future__ import annotations
 
 import numba
 
-from bcre_ca.coefficients import InPlace, Limited, by_scheme, coefficients_in, parameters_in
-from bcre_ca.line.kernels import frozen, in_place, second_order, sweep
+from bcre_ca.coefficients import coefficients_in, parameters_in
+from bcre_ca.line.kernels import container, frozen, in_place, second_order, sweep
 from bcre_ca.line.kernels.bounds import drop_of, limits_within, stable_step
 from bcre_ca.rule import ROUNDING
+from bcre_ca.schemes import InContainer, InPlace, Limited, SlopeDriven, by_scheme
 
 BLOCK = 64
 """Steps after which the window is found anew, and whether the step is still a stable one."""
@@ -42,9 +43,26 @@ def _in_place_steps(h, R, K, steps, account, period_drop, scheme):  # type: igno
     in_place.sweep(h, R, K, steps, account, period_drop)
 
 
-_take = by_scheme(_upwind_steps, {Limited: _limited_steps, InPlace: _in_place_steps})
+def _steps_in_container(h, R, K, steps, account, period_drop, scheme):  # type: ignore[no-untyped-def]
+    container.upwind(h, R, K, steps, account)
 
-_steps_whole = by_scheme(lambda scheme: False, {InPlace: lambda scheme: True})
+
+def _slope_driven_steps(h, R, K, steps, account, period_drop, scheme):  # type: ignore[no-untyped-def]
+    container.slope_driven(h, R, K, steps, account)
+
+
+_take = by_scheme(
+    _upwind_steps,
+    {
+        Limited: _limited_steps,
+        InPlace: _in_place_steps,
+        InContainer: _steps_in_container,
+        SlopeDriven: _slope_driven_steps,
+    },
+)
+
+WHOLE = (InPlace, InContainer, SlopeDriven)
+_steps_whole = by_scheme(lambda scheme: False, dict.fromkeys(WHOLE, lambda scheme: True))
 
 
 @numba.njit(error_model="numpy")
@@ -55,6 +73,19 @@ def wet_cells(R, low, high):  # type: ignore[no-untyped-def]
     while high > low and R[high - 1] == 0:
         high -= 1
     return low, high
+
+
+def _wet_or_poured_on(R, low, high, scheme):  # type: ignore[no-untyped-def]
+    if scheme.supply.any():
+        return low, high
+    return wet_cells(R, low, high)
+
+
+moving_cells = by_scheme(
+    lambda R, low, high, scheme: wet_cells(R, low, high),
+    {InContainer: _wet_or_poured_on, SlopeDriven: _wet_or_poured_on},
+)
+"""The wet cells of [low, high), and all of them where sources pour."""
 
 
 @numba.njit(error_model="numpy")
@@ -77,7 +108,7 @@ def take(h, R, K, steps, account, period_drop, a, b, whole):  # type: ignore[no-
         _take(h, R, K, steps, account, period_drop, K.scheme)
     else:
         _take(h[a:b], R[a:b], K, steps, account, None, K.scheme)
-    return wet_cells(R, a, b)
+    return moving_cells(R, a, b, K.scheme)
 
 
 @numba.njit(error_model="numpy")
@@ -88,7 +119,7 @@ def _outlasts(  # type: ignore[no-untyped-def]
 
     Below limits that have been seen to be harmless the bound need not be found again.
     """
-    low, high = wet_cells(R, 0, R.size)
+    low, high = moving_cells(R, 0, R.size, K.scheme)
     done, seen_largest, seen_sink = 0, -1.0, -1.0
     while done < steps and low < high:
         together = min(BLOCK, steps - done)

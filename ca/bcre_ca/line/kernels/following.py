@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from bcre_ca.coefficients import every_term, fold
 from bcre_ca.line.kernels.bounds import limits_within, stable_step
-from bcre_ca.line.kernels.driver import BLOCK, take, wet_cells, window
+from bcre_ca.line.kernels.driver import BLOCK, moving_cells, take, window
 from bcre_ca.rule import ROUNDING
 
 Array = NDArray[np.float64]
@@ -36,6 +36,7 @@ class Course(NamedTuple):
     steps: number of fixed steps.
     margin: share of the bound that a step takes.
     calibrating: smallest step wanted, where the bound allows it.
+    longest: a step that is long enough where there is no bound.
     """
 
     start: float
@@ -43,6 +44,7 @@ class Course(NamedTuple):
     steps: int
     margin: float
     calibrating: float
+    longest: float = math.inf
 
 
 T, FORMER, BEGAN, DT = range(4)
@@ -123,7 +125,7 @@ def follow(  # type: ignore[no-untyped-def]
     h, R, account = state.h, state.R, state.account
     every = every_term(p)
     old = State(np.empty_like(h), np.empty_like(R), np.empty_like(account))
-    low, high = wet_cells(R, 0, R.size)
+    low, high = moving_cells(R, 0, R.size, p.scheme)
     a, b, whole = window(h.size, low, high, period_drop, p.scheme)
     bound = _bound(h, R, every, period_drop, a, b, whole)
     for _ in range(blocks):
@@ -152,7 +154,7 @@ def follow(  # type: ignore[no-untyped-def]
             if course.step > 0:
                 return OUTGROWN
             _copy(old, a, b, state)
-            low, high = wet_cells(R, a, b)
+            low, high = moving_cells(R, a, b, p.scheme)
             dt = dt / 2
             counts[REDONE] += 1
         else:

@@ -17,7 +17,7 @@ from __future__ import annotations
 import numba
 import numpy as np
 
-from bcre_ca.exchange import carried, deposit_thin, eroded, eroded_at_foot
+from bcre_ca.exchange import carried, deposit_thin, eroded, eroded_at_foot, leaving
 from bcre_ca.sums import add
 
 TILE_FROM = 250_000
@@ -47,7 +47,7 @@ def _sweep(h, R, cells, K, flux_in, before):  # type: ignore[no-untyped-def]
 @numba.njit(error_model="numpy")
 def leave(h, R, last, K, flux_in, above, account):  # type: ignore[no-untyped-def]
     """One step of the cell at the open foot, into which the surface drops by ``above``."""
-    foot = K.courant * R[last]
+    foot = leaving(R[last], K)
     exchange = eroded_at_foot(R[last], above, K)
     h[last], R[last] = deposit_thin(
         h[last] - exchange, R[last] + ((flux_in - foot) + exchange), R[last], K.dry, K.emptying

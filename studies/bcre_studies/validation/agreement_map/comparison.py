@@ -19,6 +19,7 @@ from bcre_studies.validation.agreement_map.rules import (
 from bcre_studies.validation.agreement_map.thresholds import (
     HALF_WIDTH,
     LENGTH,
+    OTHER_PLACES,
     THICKNESSES,
     TO_FOOT,
 )
@@ -41,26 +42,51 @@ def compared(scenes: pd.DataFrame, thresholds: pd.DataFrame) -> pd.DataFrame:
         for thickness in THICKNESSES
         for peclet in sorted(thresholds[thresholds["model"] == AUTOMATON.name]["peclet"].unique())
     ]
+    rows += [
+        _place_row(thresholds, thickness, length, to_foot)
+        for thickness in THICKNESSES[1:]
+        for length, to_foot in OTHER_PLACES
+    ]
     return pd.DataFrame(rows)
 
 
 def _slope_row(thresholds: pd.DataFrame, thickness: float, peclet: float) -> Row:
-    usual = thresholds[
-        (thresholds["thickness"] == thickness)
-        & (thresholds["length"] == LENGTH)
-        & (thresholds["to_foot"] == TO_FOOT)
-    ]
+    usual = _at(thresholds, thickness)
     own = usual[(usual["model"] == AUTOMATON.name) & (usual["peclet"] == peclet)]["s"].item()
     coarse, fine = bcre_thresholds(usual)
+    error = abs(fine - coarse) + HALF_WIDTH
+    return _row(f"a = {thickness:g}, Pe = {peclet:g}", own, fine, error)
+
+
+def _place_row(thresholds: pd.DataFrame, thickness: float, length: float, to_foot: float) -> Row:
+    """On one grid; the error is the larger one of the usual place, of both its grids."""
+    there = _at(thresholds, thickness, length, to_foot).set_index("model")["s"]
+    coarse, fine = bcre_thresholds(_at(thresholds, thickness))
+    error = 2 * abs(fine - coarse) + HALF_WIDTH
+    case = f"a = {thickness:g}, Pe = 1, L = {length:g}, {to_foot:g} from the foot"
+    return _row(case, float(there[AUTOMATON.name]), float(there[BCRE.name]), error)
+
+
+def _at(
+    thresholds: pd.DataFrame, thickness: float, length: float = LENGTH, to_foot: float = TO_FOOT
+) -> pd.DataFrame:
+    return thresholds[
+        (thresholds["thickness"] == thickness)
+        & (thresholds["length"] == length)
+        & (thresholds["to_foot"] == to_foot)
+    ]
+
+
+def _row(case: str, own: float, bcre: float, error: float) -> Row:
     return {
         "quantity": "s at which it runs to the top",
-        "case": f"a = {thickness:g}, Pe = {peclet:g}",
+        "case": case,
         AUTOMATON.column: own,
         "low": round(own - HALF_WIDTH, 4),
         "high": round(own + HALF_WIDTH, 4),
-        BCRE.column: fine,
-        f"{BCRE.column}_error": significant(abs(fine - coarse) + HALF_WIDTH, 1),
-        "difference": significant(abs(own - fine) / fine, 3),
+        BCRE.column: bcre,
+        f"{BCRE.column}_error": significant(error, 1),
+        "difference": significant(abs(own - bcre) / bcre, 3),
     }
 
 

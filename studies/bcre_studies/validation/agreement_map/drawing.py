@@ -21,7 +21,11 @@ from bcre_studies.validation.agreement_map.prediction import (
     largest_broadening,
 )
 from bcre_studies.validation.agreement_map.pulses import Pulse
-from bcre_studies.validation.agreement_map.thresholds import LENGTH, TO_FOOT
+from bcre_studies.validation.agreement_map.thresholds import (
+    LENGTH,
+    THICKNESSES,
+    TO_FOOT,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -143,26 +147,21 @@ def critical(peclet: float) -> float:
 
 
 def _distances(axis: Axes, thresholds: pd.DataFrame) -> None:
-    """The automaton's at Pe = 1, over the distance to the foot, on slopes of two lengths."""
-    own = thresholds[(thresholds["model"] == AUTOMATON.name) & (thresholds["peclet"] == 1.0)]
-    thick = own[own["thickness"] > own["thickness"].min()]
+    """Both models' at Pe = 1, over the distance to the foot; on a longer slope hollow."""
+    thick = thresholds[thresholds["thickness"].isin(THICKNESSES[1:])]
     for shade, (thickness, rows) in zip(SHADES[1:], thick.groupby("thickness"), strict=True):
-        names = {LENGTH: f"a = {thickness:g}"}
-        if shade == SHADES[-1]:
-            names[2 * LENGTH] = f"L = {2 * LENGTH:g} D/v instead of {LENGTH:g}"
-        for length, marker in ((LENGTH, AUTOMATON.marker), (2 * LENGTH, "D")):
-            these = rows[rows["length"] == length].sort_values("to_foot")
-            axis.plot(
-                these["to_foot"],
-                these["s"],
-                color=shade,
-                marker=marker,
-                markerfacecolor=shade if length == LENGTH else "none",
-                markersize=4.5 if length == LENGTH else 9,
-                linestyle="-" if length == LENGTH else "",
-                label=names.get(length, "_nolegend_"),
-            )
-    axis.set_xlabel("distance to the foot, D/v")
+        for model in (AUTOMATON, BCRE):
+            of = rows[(rows["model"] == model.name) & (rows["peclet"] <= 1)]
+            of = of.sort_values("peclet").groupby(["length", "to_foot"]).tail(1)
+            usual = of[of["length"] == LENGTH].sort_values("to_foot")
+            longer = of[of["length"] != LENGTH]
+            look = model.marked_line | {"color": shade, "linewidth": 1.2, "markersize": 4.5}
+            look["label"] = f"a = {thickness:g}, {model.label}"
+            axis.plot(usual["to_foot"], usual["s"], **look)
+            hollow = model.markers(hollow=True, color=shade, markersize=9)
+            axis.plot(longer["to_foot"], longer["s"], **hollow)
+    axis.set_xlabel(f"distance to the foot, D/v (large: L = {2 * LENGTH:g})")
     axis.set_ylabel(r"$(S - S_c)/(S_d - S_c)$ of BCRE")
     axis.set_title("The same at Pe = 1, by place and length", loc="left")
-    axis.legend(fontsize=7.5)
+    axis.set_ylim(top=1.12)
+    axis.legend(fontsize=7, ncols=2, loc="upper right")

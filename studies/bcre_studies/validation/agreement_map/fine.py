@@ -6,6 +6,7 @@ Stopped and started again it goes on where it was.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
 from dataclasses import asdict, fields
 from pathlib import Path
@@ -17,7 +18,8 @@ import pandas as pd
 from bcre_studies.reporting import style
 from bcre_studies.sweeps import parallel
 from bcre_studies.sweeps.sweep import Sweep, run
-from bcre_studies.sweeps.table import read
+from bcre_studies.sweeps.table import OtherSweepError, read
+from bcre_studies.sweeps.workers import ClusterError
 from bcre_studies.system.files import replace_file, replace_text
 from bcre_studies.validation.agreement_map import comparison
 from bcre_studies.validation.agreement_map.comparison import FIT_SEED, TEST_SEED
@@ -73,9 +75,13 @@ def sweep_of(count: int) -> Sweep:
 @click.option("--out", type=click.Path(path_type=Path), default=Path("out/maps"))
 def main(scenes: int, scheduler: str | None, out: Path) -> None:
     """The map of agreement from many scenes."""
-    run(sweep_of(scenes), out, scheduler, lambda line: click.echo(line, err=True))
-    with parallel.on(scheduler):
-        thresholds = thresholds_of(settings(PECLETS, GRIDS))
+    try:
+        run(sweep_of(scenes), out, scheduler, lambda line: click.echo(line, err=True))
+        with parallel.on(scheduler):
+            thresholds = thresholds_of(settings(PECLETS, GRIDS))
+    except (ClusterError, OtherSweepError) as refusal:
+        click.echo(f"maps: {refusal}", err=True)
+        sys.exit(2)
     found = read(out)
     found["verdict"] = found["verdict"].where(found["failure"] == "", FAILED)
     tables = {

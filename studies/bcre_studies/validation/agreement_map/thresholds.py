@@ -28,7 +28,8 @@ UNTIL = 3000.0
 THICKNESSES = (1e-7, 1e-2, 0.1, 1.0)
 PECLETS = (0.25, 0.5, 1.0, 1.5, 2.0)
 GRIDS = (60, 120)
-"""BCRE's cells; what changes from one to the other is the error of a threshold."""
+"""BCRE's cells; what changes from one to the other is the error of a threshold. At other places
+both models have cells of D/v."""
 
 OTHER_PLACES = ((2 * LENGTH, TO_FOOT), (LENGTH, 8.0), (LENGTH, 30.0))
 """Length and distance to the foot, besides the usual ones."""
@@ -120,7 +121,8 @@ def settings(peclets: Sequence[float], grids: Sequence[int]) -> list[Setting]:
         for peclet in peclets
     ]
     wanted += [
-        Setting(AUTOMATON.name, round(length), thickness, length, to_foot)
+        Setting(model, round(length), thickness, length, to_foot)
+        for model in (BCRE.name, AUTOMATON.name)
         for thickness in THICKNESSES[1:]
         for length, to_foot in OTHER_PLACES
     ]
