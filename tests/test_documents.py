@@ -7,6 +7,7 @@ import tomllib
 import pytest
 
 from bcre_studies.catalog import STUDIES
+from bcre_studies.cli import app
 from bcre_studies.system.files import ROOT
 
 DOCUMENTS = [
@@ -56,6 +57,11 @@ def test_checklist_has_a_row_for_every_study_with_a_table_that_exists():
     for study, file, folder in rows:
         assert study == folder
         assert (ROOT / file).is_file()
+
+
+def test_every_command_is_documented():
+    documented = set(re.findall(r"`bcre (\w+)", text_of("docs/commands.md")))
+    assert documented >= set(app.commands)
 
 
 def test_version_is_the_same_everywhere():

@@ -14,8 +14,8 @@ THICK_BOUND = (
 )
 
 SLOPE_DRIVEN_BOUND = (
-    "(beta max(S, Sc) + gamma R) dt/d + gamma Sc dt + 2 D dt/d^2 must not exceed 1, S summed over "
-    "both sides of a ridge"
+    "(beta max(S, 2.5 Sc) + gamma R) dt/d + gamma Sc dt + 2 D dt/d^2 must not exceed 1, S summed "
+    "over both sides of a ridge"
 )
 
 WAVE_BOUND: dict[str, str] = {

@@ -38,6 +38,9 @@ STUDIES = {
     "avalanche_extent": Entry(
         "validation.avalanche_extent", "What an avalanche moves: how much, how far, and when"
     ),
+    "opening_angle": Entry(
+        "validation.opening_angle.study", "The angle at which an avalanche opens on a plane"
+    ),
     "choices": Entry(
         "validation.choices", "Do the verdicts stand when our own choices are halved and doubled?"
     ),

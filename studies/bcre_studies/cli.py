@@ -64,7 +64,7 @@ def main() -> None:
         signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends the workers too
     _show_every_name()
     try:
-        app(standalone_mode=False)
+        app(prog_name="bcre", standalone_mode=False)
     except click.exceptions.NoArgsIsHelpError as error:
         click.echo(error.format_message())
     except click.ClickException as error:

@@ -131,6 +131,7 @@ PAPER_CLAIMS = (
             ("uphill_propagation", "rolling front"),
             ("uphill_propagation", "scarp"),
         ),
+        measured=(("opening_angle", "90 degrees at Sd"),),
         remarks={
             CONDITIONAL: "the surface wave climbs at gamma R on any slope, the rolling layer above "
             "Sd only; in figure 3, far below Sd, what lies above the start is where the pulse "
@@ -196,6 +197,7 @@ PAPER_CLAIMS = (
         measured=(
             ("paper_figures", "figure1 profile at t = 250, effective"),
             ("paper_figures", "figure1 climb, effective"),
+            ("opening_angle", "opening angle, figure 1"),
         ),
         remarks={
             CONDITIONAL: "with cell size counted, at a cell Peclet number of 1, and up to t = 200; "
@@ -228,6 +230,7 @@ PAPER_CLAIMS = (
             ("second_critical_angle", "second critical slope, other materials"),
             ("roughness_decay", "short waves"),
         ),
+        measured=(("opening_angle", "opening angle, other materials"),),
         remarks={
             REFUTED: "with cell size counted it does up to a cell Peclet number of about 1 and "
             "for waves of twelve cells or more, beyond which the expansion in d ends"

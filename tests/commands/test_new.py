@@ -79,5 +79,8 @@ def test_survey_that_cannot_be_a_slope_is_refused_in_one_line(bcre, x, head, wor
 def test_survey_that_runs_uphill_is_refused(bcre):
     Path("up.csv").write_text("x,h\n0,0\n1,1\n2,2\n3,3\n", encoding="utf-8")
     assert "must fall, because x runs downhill" in bcre("new", "a", "--survey", "up.csv").refusal
+    Path("up.csv").write_text("x;h\n0,0;4,5\n", encoding="utf-8")
+    told = bcre("new", "a", "--survey", "up.csv").refusal
+    assert "has the head 'x;h'; must have commas between its columns" in told
     assert "no such file" in bcre("new", "a", "--survey", "none.csv").refusal
     assert not Path("a.toml").exists()

@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from click.shell_completion import BashComplete
 
 from bcre_studies import cli
 from bcre_studies.advisor import advice_text
@@ -81,7 +82,7 @@ def test_scene_called_like_a_built_in_one_has_no_part_of_its_folder(bcre, scene)
 
 
 def test_two_scenes_of_one_name_share_no_advice(bcre, scene, monkeypatch):
-    monkeypatch.setattr(advice_text, "advise", None)  # it must be refused before
+    monkeypatch.setattr(advice_text, "advise_with_reference", None)  # it must be refused before
     one, other = scene("a"), scene("b")
     Path("out").mkdir()
     Path("out/scene-advice.toml").write_text("# 50 cells\n# advised for ../a/scene.toml\n")
@@ -223,6 +224,30 @@ def test_module_is_the_command():
         [sys.executable, "-m", "bcre_studies", "--version"], capture_output=True, text=True
     )
     assert (ended.returncode, ended.stdout) == (0, f"bcre {release()}\n")
+
+
+@pytest.mark.parametrize(
+    ("typed", "offered"),
+    [
+        ("run figure1_b", "figure1_between"),
+        ("show rough", "rough_slope"),
+        ("study second", "second_critical_angle"),
+        ("sh", "show"),
+        ("run figure2 --mod", "--model"),
+    ],
+)
+def test_shell_completes_what_is_typed(typed, offered):
+    *before, last = typed.split()
+    completion = BashComplete(cli.app, {}, "bcre", "_BCRE_COMPLETE")
+    assert offered in [item.value for item in completion.get_completions(before, last)]
+
+
+def test_shell_is_answered_under_the_name_of_the_command():
+    script = "from bcre_studies.cli import main; main()"
+    environment = os.environ | {"_BCRE_COMPLETE": "bash_source"}
+    command = [sys.executable, "-c", script]
+    ended = subprocess.run(command, env=environment, capture_output=True, text=True)
+    assert "complete -o nosort -F _bcre_completion bcre" in ended.stdout
 
 
 @pytest.mark.parametrize("command", [[], *([name] for name in cli.app.commands)])

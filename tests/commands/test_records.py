@@ -102,7 +102,9 @@ def test_check_that_lacks_the_verdicts_says_so_before_anything_is_measured(witho
 def test_advice_without_a_record_measures_what_runs_cost(without, monkeypatch):
     measured = pd.read_csv(PROJECT / "reports/speed/costs.csv")
     monkeypatch.setattr(advice_text, "measure", lambda: measured)
-    monkeypatch.setattr(advice_text, "advise", lambda question, effort: used.append(effort.costs))
+    monkeypatch.setattr(
+        advice_text, "advise_with_reference", lambda _, effort: used.append(effort.costs)
+    )
     monkeypatch.setattr(advice_text, "write_advised", lambda *_: None)
     monkeypatch.setattr(advice_text, "text", lambda *_: "advised")
     used = []

@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from bcre_studies.advisor import advise as advise_module
-from bcre_studies.advisor.advice_text import answer
+from bcre_studies.advisor.advice_text import answer, text, write_advised
 from bcre_studies.advisor.advise import Effort, advise
 from bcre_studies.advisor.candidate import SAFETY, Candidate, Pilot
 from bcre_studies.advisor.closed_forms import closed_form
@@ -17,6 +17,7 @@ from bcre_studies.advisor.deviation import OBSERVABLES, deviation, posed, uncert
 from bcre_studies.advisor.pilot import Allowance, PilotError, coarsest, reference, run_model
 from bcre_studies.advisor.question import Question, seconds_of
 from bcre_studies.advisor.scene_text import scene_text
+from bcre_studies.advisor.widened import advise_with_reference
 from bcre_studies.cli import app
 from bcre_studies.models.run import frame_times
 from bcre_studies.performance import advice as study
@@ -144,6 +145,32 @@ def test_past_a_scarp_without_kappa_nothing_is_advised():
     assert "past a scarp with kappa = 0" in advice.why
 
 
+def test_past_a_scarp_advice_is_against_a_named_kappa_that_the_advised_scene_has(tmp_path):
+    scene = load("figure1").with_changes(until=220.0, cells=50)
+    asked = Question(scene, 0.05, frames=3)
+    advice = advise_with_reference(asked, counted())
+    assert advice.instead_of.needs_width
+    assert not advice.instead_of.options
+    assert advice.question.scene == scene.with_changes(kappa=0.01)  # gamma d/2, d = 2
+    assert advice.pilots_s > advice.instead_of.pilots_s
+    best, path = advice.options[0], tmp_path / "advised.toml"
+    fine = run_model(advice.question.scene, "pde", advice.question.times, 400)
+    run = run_model(advice.question.scene, best.model, advice.question.times, best.cells)
+    assert deviation(run, fine) <= 0.05
+    told = text(advice, "figure1", path)
+    assert "unresolved:     R of BCRE is known to" in told
+    assert "instead:        kappa = 0.01 = gamma d/2" in told
+    assert "reference:      BCRE with kappa = 0.01 on" in told
+    write_advised(advice, Origin("figure1"), path)
+    assert load(path).material.kappa == 0.01
+
+
+def test_advice_that_is_resolved_keeps_the_scene_as_it_is():
+    assert advise_with_reference(Question(load("figure2")), counted()).instead_of is None
+    gone = advise_with_reference(Question(load("pulse_at_repose")), counted())
+    assert gone.instead_of is None
+
+
 def test_with_kappa_the_scarp_is_resolved_and_upwind_is_not_predicted():
     scene = load("figure1").with_changes(kappa=0.05, until=250.0)
     advice = advise(Question(scene, 0.05), counted())
@@ -267,12 +294,12 @@ def unhurried(monkeypatch):
 
 def test_what_is_written_runs_as_predicted(tmp_path, unhurried):
     path = tmp_path / "advised.toml"
-    text = answer(Question(load("climbing_wave"), 0.01, frames=3), Origin("climbing_wave"), path)
-    assert "recommended:" in text
-    assert f"bcre run {path} --model" in text
+    told = answer(Question(load("climbing_wave"), 0.01, frames=3), Origin("climbing_wave"), path)
+    assert "recommended:" in told
+    assert f"bcre run {path} --model" in told
     advised = load(path)
-    cells = int(re.search(r"recommended:.* (\d+) cells", text)[1])
-    model = "pde" if "recommended:    BCRE" in text else "ca"
+    cells = int(re.search(r"recommended:.* (\d+) cells", told)[1])
+    model = "pde" if "recommended:    BCRE" in told else "ca"
     (run,) = run_scene(advised, model, 3)
     assert run.x.size == cells
     exact = closed_form(load("climbing_wave")).run(load("climbing_wave"), run.t, 400)

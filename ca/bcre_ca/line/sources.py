@@ -32,14 +32,15 @@ class Source:
     until: float = math.inf
 
     def __post_init__(self) -> None:
-        for name in ("rate", "start"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value >= 0):
-                raise ValueError(f"source {name} = {value!r}: must be a finite number >= 0")
-        if not (math.isfinite(self.width) and self.width > 0):
-            raise ValueError(f"source width = {self.width!r}: must be a finite number > 0")
-        if not self.until >= self.start:
-            raise ValueError(f"source until = {self.until!r}: must be at least {self.start!r}")
+        must = {
+            "rate": (0 <= self.rate < math.inf, "a finite number >= 0"),
+            "width": (0 < self.width < math.inf, "a finite number > 0"),
+            "start": (0 <= self.start < math.inf, "a finite number >= 0"),
+            "until": (self.start <= self.until, f"at least start = {self.start!r}"),
+        }
+        for name, (allowed, what) in must.items():
+            if not allowed:
+                raise ValueError(f"source {name} = {getattr(self, name)!r}: must be {what}")
 
 
 def supply_of(sources: Sequence[Source], t: float, cells: int, d: float) -> Array | None:

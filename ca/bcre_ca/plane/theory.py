@@ -11,6 +11,7 @@ multiplies R(i, j) = e^(m i + n j) by
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from scipy.optimize import brentq, minimize_scalar
 
@@ -21,8 +22,22 @@ OUTGOING = {"tilted": 1.0, "split4": 2.0, "facet8": 1.0, "d8": 1.0}
 """Largest sum of the parts of v dt/d that leave a cell, and of those that a rise of its h takes."""
 
 
-def opening_angle(v: float, D: float, D_across: float, sigma: float, d: float) -> float:
-    r"""Half the angle at which an avalanche opens below its start, in degrees; 90 from Sd on.
+class Edge(NamedTuple):
+    """The edge of an avalanche: e^(along x - across y) is steady there, y = x tan(theta) on it.
+
+    ``theta`` in degrees, ``along`` and ``across`` in 1/length. ``parting`` is by how much faster
+    what comes from below fades uphill, e^(-parting x) of it is left; 0 from Sd on, where sand grows
+    at every place.
+    """
+
+    theta: float
+    along: float
+    across: float
+    parting: float
+
+
+def edge(v: float, D: float, D_across: float, sigma: float, d: float) -> Edge:
+    r"""The edge of an avalanche below its start, and the steady wave that makes it.
 
     N(i, j), all the sand that ever passed cell (i, j), is the sum of R over the steps. Summed, a
     step says that the bracket above, as an operator, takes N to minus the sand released: dt falls
@@ -57,18 +72,26 @@ def opening_angle(v: float, D: float, D_across: float, sigma: float, d: float) -
     def q(m: float) -> float:
         return -peclet * math.expm1(-m) - 4 * math.sinh(m / 2) ** 2 - growth
 
+    def across(m: float) -> float:
+        return 2 * math.asinh(math.sqrt(max(q(m), 0.0) / ratio) / 2)
+
     steepest = math.log1p(peclet) / 2
     if q(steepest) <= 0:
-        return 90.0
+        return Edge(90.0, steepest / d, 0.0, 0.0)
     root = brentq(q, 0.0, steepest, xtol=1e-300, rtol=1e-15)
-
-    def minus_cotangent(m: float) -> float:
-        return -2 / m * math.asinh(math.sqrt(max(q(m), 0.0) / ratio) / 2)
-
     found = minimize_scalar(
-        minus_cotangent, bounds=(root, steepest), method="bounded", options={"xatol": 1e-13}
+        lambda m: -across(m) / m,
+        bounds=(root, steepest),
+        method="bounded",
+        options={"xatol": 1e-13},
     )
-    return math.degrees(math.atan2(1.0, -found.fun))
+    theta = math.degrees(math.atan2(1.0, -found.fun))
+    return Edge(theta, found.x / d, across(found.x) / d, 2 * (steepest - found.x) / d)
+
+
+def opening_angle(v: float, D: float, D_across: float, sigma: float, d: float) -> float:
+    """Half the angle at which an avalanche opens, in degrees; 90 from Sd on. See :func:`edge`."""
+    return edge(v, D, D_across, sigma, d).theta
 
 
 def opening_angle_on(plane: Plane, slope: float) -> float:

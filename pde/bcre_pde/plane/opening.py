@@ -2,12 +2,12 @@ r"""The opening angle of an avalanche, measured on a solution.
 
 N(x, y) is all of R that ever passed a place. Far from where it started N falls along a ray as
 
-    ln N = a(phi) r - (1/2) ln r + b(phi) + c(phi)/r + ...
+    ln N + (1/2) ln r = a(phi) r + b(phi) + c(phi)/r + e(phi)/r^2 + ...
 
-and the edge of the wedge is the ray on which a = 0. So ln N + (1/2) ln r is the same at r and 2 r
-on a ray that tends to the edge as 1/r^2; the rays from r, 2 r and from 2 r, 4 r together, (4 second
-- first)/3, tend to it faster. An edge drawn where R passes some threshold is off by 5 to 10 degrees
-at any size that one can afford.
+and the edge of the wedge is the ray on which a = 0. On each ray these four terms are fitted to N at
+seven distances from r to 4 r; the ray with a = 0 then tends to the edge as 1/r^4. The error is what
+the last of them or a further one moves it by. An edge drawn where R passes some
+threshold is off by 5 to 10 degrees at any size that one can afford.
 """
 
 from __future__ import annotations
@@ -23,9 +23,15 @@ from scipy.optimize import brentq
 from bcre_pde.plane.problem import Frame
 from bcre_pde.problem import Array
 
+DISTANCES = np.linspace(1, 4, 7)
+"""Where N is read on a ray, in units of the nearest."""
+
+RAYS = 60
+"""Rays on which the sign of a is looked at, from the axis to the widest one on the plane."""
+
 
 class OpeningAngle(NamedTuple):
-    """Half-angle in degrees; ``error`` is what the extrapolation moved it by."""
+    """Half-angle in degrees; ``error`` is what one term more or less moves it by."""
 
     theta: float
     error: float
@@ -51,7 +57,7 @@ def passed_in_all(frames: Iterable[Frame]) -> Array:
 def opening_angle(
     N: Array, x: Array, y: Array, source: tuple[float, float], r: float
 ) -> OpeningAngle:
-    """Measured on the side y > source[1], from N at the distances r, 2 r and 4 r.
+    """Measured on the side y > source[1], from N at distances from r to 4 r.
 
     Parameters
     ----------
@@ -65,22 +71,25 @@ def opening_angle(
     ValueError
         where no ray on the plane has the property of an edge.
     """
-    surface = RectBivariateSpline(x, y, np.log(np.maximum(N, np.finfo(float).tiny)))
+    surface = RectBivariateSpline(x, y, np.log(np.maximum(N, np.finfo(float).tiny)), kx=5, ky=5)
+    distances = r * DISTANCES
+    widest = math.degrees(math.asin(min(1.0, (y[-1] - source[1]) / distances[-1])))
 
-    def edge(distance: float) -> float:
-        def gain(degrees: float) -> float:
-            across, along = math.sin(math.radians(degrees)), math.cos(math.radians(degrees))
-            near, far = (
-                float(surface(source[0] + d * along, source[1] + d * across)[0, 0])
-                for d in (distance, 2 * distance)
-            )
-            return far - near + math.log(2) / 2
+    def edge(terms: int) -> float:
+        basis = DISTANCES[:, None] ** (1 - np.arange(terms))
+        weights = np.linalg.pinv(basis)[0] / r
 
-        widest = math.degrees(math.asin(min(1.0, (y[-1] - source[1]) / (2 * distance))))
-        if not gain(0.0) > 0 > gain(widest):
+        def growth(degrees: float) -> float:
+            along, across = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+            logs = surface.ev(source[0] + distances * along, source[1] + distances * across)
+            return float(weights @ (logs + np.log(distances) / 2))
+
+        rays = np.linspace(0.0, widest, RAYS)
+        signs = np.array([growth(degrees) > 0 for degrees in rays])
+        last = np.flatnonzero(signs[:-1] & ~signs[1:])
+        if not last.size:
             raise ValueError(f"r = {r!r}: no edge of N lies on the plane there")
-        return float(brentq(gain, 0.0, widest, xtol=1e-9))
+        return float(brentq(growth, rays[last[-1]], rays[last[-1] + 1], xtol=1e-9))
 
-    first, second = edge(r), edge(2 * r)
-    theta = (4 * second - first) / 3
-    return OpeningAngle(theta, abs(theta - second))
+    less, theta, more = (edge(terms) for terms in (3, 4, 5))
+    return OpeningAngle(theta, max(abs(theta - less), abs(theta - more)))

@@ -12,11 +12,12 @@ from rich.console import Console
 from rich.markup import escape
 from rich.progress import Progress
 
-from bcre_studies.advisor.advise import Advice, Effort, advise
+from bcre_studies.advisor.advise import Advice, Effort
 from bcre_studies.advisor.options import PRECISE, Option
 from bcre_studies.advisor.pilot import with_model
 from bcre_studies.advisor.question import Question
 from bcre_studies.advisor.scene_text import scene_text
+from bcre_studies.advisor.widened import advise_with_reference
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.models.bcre import COARSEST
 from bcre_studies.models.registry import AUTOMATON, BCRE, CANDIDATES, SCHEMES
@@ -51,7 +52,7 @@ def answer(question: Question, origin: Origin, path: Path) -> str:
         def tell(pilot: str) -> None:
             progress.update(task, description=escape(f"pilot: {pilot}"), advance=1)
 
-        advice = advise(question, Effort(_costs(tell), tell=tell))
+        advice = advise_with_reference(question, Effort(_costs(tell), tell=tell))
     write_advised(advice, origin, path)
     return text(advice, origin.name, path)
 
@@ -98,6 +99,8 @@ def write_advised(advice: Advice, origin: Origin, path: Path) -> None:
 def _lines(advice: Advice, scene: str, path: Path) -> Iterator[str]:
     question = advice.question
     yield f"asked:          {scene}: {_asked(question)}"
+    if advice.instead_of is not None:
+        yield from _instead(advice, advice.instead_of)
     if advice.closed is not None:
         form, error = advice.closed
         yield f"closed form:    {form.name}, error {_percent(error)}, at no cost: {form.formula}"
@@ -112,13 +115,26 @@ def _lines(advice: Advice, scene: str, path: Path) -> Iterator[str]:
         yield f"left out:       {CANDIDATES[model].label}: {why}"
     if math.isfinite(advice.reference_error):
         known = f"its own error {_percent(advice.reference_error)}"
-        yield f"reference:      BCRE on {advice.reference_cells} cells, {known}"
+        kappa = question.scene.material.kappa
+        named = f" with kappa = {kappa:g}" if kappa else ""
+        yield f"reference:      BCRE{named} on {advice.reference_cells} cells, {known}"
     yield f"pilots:         {advice.pilots_s:.2g} s"
     if advice.options:
         model = AUTOMATON.name if advice.options[0].model in SCHEMES else BCRE.name
         yield f"wrote:          {path}"
         command = f"bcre run {shlex.quote(str(path))} --model {model}{_frames(question)}"
         yield f"run it:         {command}"
+
+
+def _instead(advice: Advice, first: Advice) -> Iterator[str]:
+    """Which reference stands in for BCRE with kappa = 0, and why."""
+    scene = advice.question.scene
+    yield f"unresolved:     {first.why}"
+    yield (
+        f"instead:        kappa = {scene.material.kappa:g} = gamma d/2, the curvature that the "
+        f"scene's cells of d = {scene.d:g} add to the automaton"
+    )
+    yield f"{'':16}all errors below are from BCRE with this kappa, and the advised scene has it"
 
 
 def _asked(question: Question) -> str:

@@ -79,7 +79,9 @@ class Advice:
 
     ``options`` are the models that do what was asked for, the best one first; where there is none,
     ``why`` says for what reason. ``left_out`` gives the reason for each other
-    model; ``closed`` is a closed form that meets the request, with its error.
+    model; ``closed`` is a closed form that meets the request, with its error. ``needs_width`` says
+    that a scarp with kappa = 0 left the reference unresolved, and ``instead_of`` holds the advice
+    that ended so, where this one has another reference (``widened``).
     """
 
     question: Question
@@ -90,6 +92,8 @@ class Advice:
     reference_error: float = math.inf
     pilots_s: float = 0.0
     why: str = ""
+    needs_width: bool = False
+    instead_of: Advice | None = None
 
 
 def advise(question: Question, effort: Effort) -> Advice:
@@ -106,6 +110,7 @@ def advise(question: Question, effort: Effort) -> Advice:
             reference_error=against.error,
             pilots_s=allowance.spent,
             why=_unresolved(question, against),
+            needs_width=_needs_width(question, against),
         )
     found, left_out = _piloted(question, against, effort, allowance)
     options, reasons = confirmed(question, found, against, allowance)
@@ -181,10 +186,10 @@ def _unresolved(question: Question, against: Reference) -> str:
     """Why the error of the reference is not small."""
     cells = against.run.x.size
     found = f"{question.observable} of BCRE is known to {against.error:.2g} only, on {cells} cells"
-    left = float(against.run.R[-1].mean() / (against.run.R[0].mean() or 1.0))
+    left = _left(against)
     if question.observable == "R" and left < GONE:
         return f"{found}: {left:.1g} of the layer is left in the domain, which is what R is then"
-    if against.has_scarp and question.scene.material.kappa == 0:
+    if _needs_width(question, against):
         return (
             f"{found}: past a scarp with kappa = 0 it has no converged solution to be near to; "
             "a material.kappa > 0 gives the scarp a width"
@@ -192,6 +197,18 @@ def _unresolved(question: Question, against: Reference) -> str:
     if cells < FINEST:
         return f"{found}, and finer pilots would take too long"
     return f"{found}, the finest pilots"
+
+
+def _needs_width(question: Question, against: Reference) -> bool:
+    """Whether it is a scarp with kappa = 0 that leaves the reference unresolved."""
+    material = question.scene.material
+    is_gone = question.observable == "R" and _left(against) < GONE
+    return against.has_scarp and material.kappa == 0 and material.gamma > 0 and not is_gone
+
+
+def _left(against: Reference) -> float:
+    """The part of the rolling layer that is left at the end."""
+    return float(against.run.R[-1].mean() / (against.run.R[0].mean() or 1.0))
 
 
 def _closed(question: Question, against: Reference) -> tuple[ClosedForm, float] | None:

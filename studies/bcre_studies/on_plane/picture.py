@@ -66,12 +66,16 @@ def hillshade(run: PlaneRun, frame: int) -> Array:
     """Of the surface, on a tilted plane above the repose plane: shape (N, M), 0 to 1."""
     scene = run.scene
     surface = run.h[frame]
-    steepness = float(np.abs(np.gradient(surface, scene.domain.d)).max())
     if scene.automaton.flow == "tilted":
         surface = surface + np.polyval(-_tilt(run), scene.domain.centres().x)
-        steepness = float(np.abs(np.gradient(surface, scene.domain.d)).max())
+    return shaded(surface, scene.domain.d)
+
+
+def shaded(surface: Array, d: float) -> Array:
+    """Hillshade of heights in cells of side d; the steepest of them counts as a slope of 1."""
+    steepness = float(np.abs(np.gradient(surface, d)).max())
     exaggeration = 1 / steepness if steepness > 0 else 1.0
-    return np.asarray(LIGHT.hillshade(surface, exaggeration, scene.domain.d, scene.domain.d))
+    return np.asarray(LIGHT.hillshade(surface, exaggeration, d, d))
 
 
 def _tilt(run: PlaneRun) -> Array:

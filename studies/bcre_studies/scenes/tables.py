@@ -87,6 +87,8 @@ def _rows(path: Path, refuse: Callable[[str], ProfileError]) -> tuple[list[str],
     if not lines:
         raise refuse("is empty; must be a CSV file with a head")
     head = [name.strip() for name in lines[0]]
+    if len(head) == 1 and any(sign in head[0] for sign in ";\t"):
+        raise refuse(f"has the head {head[0][:80]!r}; must have commas between its columns")
     for number, row in enumerate(lines[1:], start=1):
         if len(row) != len(head):
             raise refuse(f"row {number} has {len(row)} fields; must have {len(head)} as the head")

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 
 from bcre_ca import Rule
 from bcre_ca.plane import Plane, Run, Sand
-from bcre_ca.plane.theory import opening_angle, opening_angle_on
+from bcre_ca.plane.theory import edge, opening_angle, opening_angle_on
 
 # v, D, gamma, d, S - Sc and the angle in degrees.
 EXPECTED = [
@@ -50,6 +50,15 @@ def test_angle_reaches_90_degrees_at_the_second_critical_slope_of_the_line():
     assert opening_angle_on(plane, Sd - 1e-9) > 89.9
     assert opening_angle_on(plane, Sd) == pytest.approx(90, abs=0.01)
     assert opening_angle_on(plane, Sd + 1e-9) == 90
+
+
+@pytest.mark.parametrize(("v", "D", "gamma", "d", "s", "D_across"), UNSEEN)
+def test_wave_at_the_edge_is_steady_and_even_along_the_edge(v, D, gamma, d, s, D_across):
+    wave = edge(v, D, D_across, gamma * s, d)
+    m, n = wave.along * d, wave.across * d
+    rate = gamma * s - v / d * (1 - math.exp(-m)) + 2 * D / d**2 * (math.cosh(m) - 1)
+    assert rate + 2 * D_across / d**2 * (math.cosh(n) - 1) == pytest.approx(0, abs=1e-12)
+    assert m == pytest.approx(n * math.tan(math.radians(wave.theta)), rel=1e-9)
 
 
 def all_that_passed(v, D, gamma, d, s, D_across, part=0.9, r=24, passes=4, above=25):

@@ -1,0 +1,1 @@
+"""The angle at which an avalanche opens on a tilted plane."""
