@@ -34,7 +34,7 @@ UNTIL, LONGEST, FRAMES = 2000.0, 6000.0, 31
 EXCESSES = tuple(round(0.1 * k, 1) for k in range(1, 41))
 """Slopes S0 - Sc on which a pulse is tried."""
 
-CELLS, WAVE_CELLS = 200, 800
+CELLS, WAVE_CELLS = 200, 400
 """Grids of the models that solve equations; the rough slope asks for the finer one."""
 
 CHANGED = 0.01
@@ -116,11 +116,18 @@ def climbs(subject: Subject, excess: float, pulse: float) -> bool:
     return is_down(subject.run(pulse_scene(excess, pulse, LONGEST), times, stop=over))
 
 
-def least_excess(subject: Subject, pulse: float) -> float:
-    """The gentlest of the slopes that the pulse brings down; infinite where it brings down none.
+def least_excesses(subject: Subject) -> list[float]:
+    """The gentlest of the slopes that each pulse brings down; infinite where it brings down none.
 
-    Steeper slopes than one that comes down are taken to come down too.
+    Steeper slopes than one that comes down are taken to come down too, and so are slopes under
+    thicker pulses where the gentlest comes down under the thinnest.
     """
+    if climbs(subject, EXCESSES[0], PULSES[0]):
+        return [EXCESSES[0]] * len(PULSES)
+    return [_least(subject, pulse) for pulse in PULSES]
+
+
+def _least(subject: Subject, pulse: float) -> float:
     low, high = -1, len(EXCESSES)
     while high - low > 1:
         middle = (low + high) // 2
@@ -154,7 +161,10 @@ def properties(number: int) -> Row:
         "undisturbed": final_slope(subject, STEEP, 0.0),
         "after a pulse": final_slope(subject, STEEP, 1.0),
         "gentle": final_slope(subject, GENTLE, 1.0),
-        **{f"least, pulse {pulse:g}": least_excess(subject, pulse) for pulse in PULSES},
+        **{
+            f"least, pulse {pulse:g}": least
+            for pulse, least in zip(PULSES, least_excesses(subject), strict=True)
+        },
         "roughness left": roughness(subject),
         "reach uphill": reach(subject),
     }
