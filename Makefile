@@ -15,7 +15,7 @@ ifneq ($(shell $(RUNS) 2>/dev/null),$(CURDIR)/studies/bcre_studies/__init__.py)
 CLEAR := --clear
 endif
 
-.PHONY: help install reports speed maps test test-cluster docs faults bench check lint clean
+.PHONY: help install reports speed maps test test-cluster costs docs faults reference bench check lint clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-13s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -51,6 +51,11 @@ test-cluster: install ## run the sweeps' tests on a Dask scheduler with two work
 		|| $(PIP) --require-hashes -r requirements-cluster.lock
 	$(BIN)/python -m pytest -n 0 -o python_files='cluster_*.py' -o 'pythonpath=tests/robustness tests/cluster' tests/cluster
 
+costs: install ## measure what sweeps cost on workers and a scheduler (5 minutes), reports/quality/sweep_*.csv
+	@$(BIN)/python -c 'import distributed' 2>/dev/null \
+		|| $(PIP) --require-hashes -r requirements-cluster.lock
+	$(BIN)/python tests/cluster/costs.py
+
 docs: install ## build the documentation, docs/_build/index.html; a warning is an error
 	@$(BIN)/python -c 'import furo, myst_parser, sphinx' 2>/dev/null \
 		|| $(PIP) --require-hashes -r requirements-docs.lock
@@ -58,6 +63,9 @@ docs: install ## build the documentation, docs/_build/index.html; a warning is a
 
 faults: install ## try every fault again and write reports/quality/faults.csv
 	$(BIN)/python tests/robustness/faults.py
+
+reference: install ## hold 300 random scenes against plain integrations (some minutes)
+	$(BIN)/python tests/reference/random_scenes.py
 
 bench: install ## time the automaton against what would be used instead (under 3 minutes)
 	@$(BIN)/python -c 'import fipy' 2>/dev/null \

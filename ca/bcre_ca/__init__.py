@@ -12,8 +12,9 @@ from bcre_ca.line.evolve import (
     frames,
     largest_stable_step,
     march,
+    stepped_cells,
 )
-from bcre_ca.line.kernels import BLOCK, stepped_cells
+from bcre_ca.line.kernels import BLOCK
 from bcre_ca.line.pile import Pile
 from bcre_ca.line.sources import Source
 from bcre_ca.line.step import step

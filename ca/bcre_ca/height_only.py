@@ -9,15 +9,16 @@ from then on until it falls by Sc d.
 
 from __future__ import annotations
 
-import numba
 import numpy as np
+
+from bcre_ca.kept import kept
 
 SHARE = 0.25
 SETTLED = 1e-9
 """The pile has settled when no cell sheds more than this in a step (a length)."""
 
 
-@numba.njit(cache=True)
+@kept
 def settled(h, fall, periodic, start=0.0):  # type: ignore[no-untyped-def]
     """The height once no cell sheds more than :data:`SETTLED`, what left, and after how many steps.
 

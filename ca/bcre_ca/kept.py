@@ -35,7 +35,9 @@ _log = logging.getLogger(__name__)
 
 
 def kept(function: Callable[..., Any], sources: str = SOURCES) -> Any:
-    """The function compiled, free of Python's lock; ``sources`` is a digest of what it is made of.
+    """The function compiled, free of Python's lock; ``sources`` is a digest of what it calls.
+
+    Its own code is in the key of its machine code anyway.
 
     Where no folder can be written to, machine code is kept in memory only.
     """

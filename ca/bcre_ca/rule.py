@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from numbers import Real
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 from bcre_ca import theory
 from bcre_ca.coefficients import Coefficients, Parameters, fold
@@ -143,6 +143,13 @@ class Rule:
         for name, value in values.items():
             if getattr(self, name) != value:
                 raise ValueError(f"{name} = {getattr(self, name)!r}: must be {value!r} {why}")
+
+    def with_step(self, step: Any) -> Rule:
+        """The same rule with another dt; ValueError where that is no step."""
+        try:
+            return replace(self, dt=float(step))
+        except (TypeError, ValueError):
+            raise ValueError(f"step = {step!r}: must be 'auto' or a finite number > 0") from None
 
     def parameters(self) -> Parameters:
         """The rule without its dt, absent terms as None; beta in place of v."""

@@ -35,6 +35,11 @@ class UnstableStep(ValueError):  # noqa: N818 - named for what happened, as Stop
         )
         self.dt = dt
         self.largest = largest
+        self._bound = bound
+
+    def __reduce__(self) -> tuple[type[UnstableStep], tuple[float, float, str]]:
+        """So that it passes from a worker process to the one that asked."""
+        return type(self), (self.dt, self.largest, self._bound)
 
 
 def _rounded_down(step: float) -> str:

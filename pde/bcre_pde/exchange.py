@@ -14,9 +14,10 @@ instead of multiplying by zero.
 from __future__ import annotations
 
 import numba
+from numba.extending import register_jitable
 
 
-@numba.njit(error_model="numpy")
+@register_jitable  # plain Python too, for the stable step
 def exchanging(R, saturation):  # type: ignore[no-untyped-def]
     """X(R), the part of the layer that exchanges; ``saturation`` is gamma/v_up or None."""
     wet = max(R, 0.0)

@@ -6,11 +6,10 @@ explicit bound of stability belongs to them.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from bcre_pde.explicit import ExplicitMethod, tableau
+from bcre_pde.gate import layer, require_kind, require_positive, whole
 from bcre_pde.material import Material
 from bcre_pde.problem import SMALLEST_GRID, Array, Ends
 
@@ -48,13 +47,14 @@ def take_fixed_steps(
     from bcre_pde.equation import coefficients
     from bcre_pde.line import fluxes
 
-    for name, length in (("dx", dx), ("dt", dt)):
-        if not 0 < length < math.inf:
-            raise ValueError(f"{name} = {length!r}: must be a finite number > 0")
-    if steps < 0:
-        raise ValueError(f"steps = {steps!r}: must be >= 0")
-    if u.size < SMALLEST_GRID:
-        raise ValueError(f"cells = {u.size}: BCRE needs at least {SMALLEST_GRID} cells")
+    require_kind("material", material, Material)
+    require_positive("dx", dx)
+    require_positive("dt", dt)
+    steps = whole("steps", steps, 0)
+    cells = whole("cells", np.size(u), SMALLEST_GRID)
+    u, R = layer("u", u, (cells,)), layer("R", R, (cells,))
+    if ends not in ("open", "periodic"):
+        raise ValueError(f"ends = {ends!r}: must be 'open' or 'periodic'")
     increments, weights, _ = tableau(method)
     layers = np.array([u, R, np.zeros_like(R)], dtype=float)
     layers[2, 0] = u_foot

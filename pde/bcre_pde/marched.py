@@ -71,7 +71,16 @@ class Marched(PDEBase):  # type: ignore[misc]
         ------
         RuntimeError
             at the first call after ``most_evaluations``.
+        ValueError
+            for arrays of another shape or type than the state's, which compiled code would take
+            for it.
         """
+        for name, array in (("layers", layers), ("out", out)):
+            if array.shape != self._layers.shape or array.dtype != np.float64:
+                raise ValueError(
+                    f"{name} has the shape {array.shape} and the type {array.dtype}: must be "
+                    f"{self._layers.shape} and float64"
+                )
         self.evaluations += 1
         self.last_time = t
         self.last_layers = layers

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from numbers import Real
+
+from bcre_pde.gate import require_not_negative
 
 
 @dataclass(frozen=True)
@@ -44,8 +47,6 @@ class Material:
 
     def __post_init__(self) -> None:
         for name in ("v", "D", "gamma", "Sc", "kappa", "Gamma"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value >= 0):
-                raise ValueError(f"{name} = {value!r}: must be a finite number >= 0")
-        if not self.v_up > 0:
+            require_not_negative(name, getattr(self, name))
+        if not (isinstance(self.v_up, Real) and self.v_up > 0):
             raise ValueError(f"v_up = {self.v_up!r}: must be > 0")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from bcre_pde.gate import require_positive
 from bcre_pde.material import Material
 from bcre_pde.source import Source, require_on_line
 
@@ -50,14 +51,15 @@ class Problem:
     sources: tuple[Source, ...] = ()
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.length) and self.length > 0):
-            raise ValueError(f"length = {self.length!r}: must be a finite number > 0")
+        if not callable(self.initial):
+            raise ValueError(f"initial = {self.initial!r}: must be a function of x")
+        require_positive("length", self.length)
         if self.ends not in get_args(Ends):
             raise ValueError(f"ends = {self.ends!r}: must be one of {get_args(Ends)}")
         require_on_line(self.sources, self.length)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Solution:
     """Layers at the cell centres ``x`` (N,) and times ``t`` (T,): ``h``, ``R`` of shape (T, N).
 

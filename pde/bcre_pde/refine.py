@@ -24,7 +24,7 @@ LEAST_GRIDS = TRIPLES + 2
 Allowed = Callable[[Sequence[Any]], Iterable[float]]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Measured:
     """A measured quantity with its error; ``order`` and what follows where grids were refined.
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import itertools
-import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
+from bcre_pde.gate import ascending, initial_layers, require_kind, require_tolerance, whole
 from bcre_pde.problem import SMALLEST_GRID, Array, Method, Problem, Solution
 from bcre_pde.source import Source
 
@@ -61,10 +61,9 @@ def solve(
     times = ascending(times)
     if method not in get_args(Method):
         raise ValueError(f"method = {method!r}: must be one of {get_args(Method)}")
-    if not 0 < tolerance < 1:
-        raise ValueError(f"tolerance = {tolerance!r}: must lie between 0 and 1")
-    if cells < SMALLEST_GRID:
-        raise ValueError(f"cells = {cells!r}: must be at least {SMALLEST_GRID}")
+    require_kind("problem", problem, Problem)
+    require_tolerance(tolerance)
+    cells = whole("cells", cells, SMALLEST_GRID)
     from bcre_pde.advance import advance
     from bcre_pde.equation import BCRE
 
@@ -141,19 +140,7 @@ def _initial_state(
     problem: Problem, equation: MarchedOnLine, grid: CartesianGrid
 ) -> FieldCollection:
     x = grid.cell_coords[:, 0]
-    h, R = problem.initial(x)
-    h_foot, _ = problem.initial(np.array([problem.length]))
+    h, R = initial_layers(problem.initial(x), x.shape)
+    h_foot, _ = initial_layers(problem.initial(np.array([problem.length])), (1,))
     Sc = problem.material.Sc
-    if not (np.isfinite(h).all() and np.isfinite(R).all()):
-        raise ValueError("the initial h and R must be finite")
     return equation.state(grid, h + Sc * x, R, float(h_foot[0]) + Sc * problem.length)
-
-
-def ascending(times: Sequence[float]) -> list[float]:
-    """The times as numbers, refused unless they ascend from 0 or later."""
-    ordered = [float(t) for t in times]
-    if not ordered or ordered[0] < 0 or not all(map(math.isfinite, ordered)):
-        raise ValueError(f"times = {ordered!r}: must be finite, >= 0 and not empty")
-    if any(a >= b for a, b in itertools.pairwise(ordered)):
-        raise ValueError(f"times = {ordered!r}: must ascend")
-    return ordered

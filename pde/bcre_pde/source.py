@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from numbers import Real
 
 import numpy as np
 from numpy.typing import NDArray
+
+from bcre_pde.gate import require_not_negative, require_positive
 
 Array = NDArray[np.float64]
 
@@ -37,12 +40,9 @@ class Source:
 
     def __post_init__(self) -> None:
         for name in ("rate", "start"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value >= 0):
-                raise ValueError(f"source {name} = {value!r}: must be a finite number >= 0")
-        if not (math.isfinite(self.width) and self.width > 0):
-            raise ValueError(f"source width = {self.width!r}: must be a finite number > 0")
-        if not self.until >= self.start:
+            require_not_negative(f"source {name}", getattr(self, name))
+        require_positive("source width", self.width)
+        if not (isinstance(self.until, Real) and self.until >= self.start):
             raise ValueError(f"source until = {self.until!r}: must be at least {self.start!r}")
 
     def poured(self, t: float) -> float:

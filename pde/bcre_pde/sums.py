@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import numba
+from bcre_pde.kept import kept
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kept()
 def weighted_sum(start, terms, weights, count, dt, out):  # type: ignore[no-untyped-def]
     """out = start + the first ``count`` weights times terms; weights of zero are skipped.
 

@@ -168,7 +168,7 @@ def largest_explicit_step(material: Material, dx: float, largest_R: float) -> fl
     """
     from bcre_pde.exchange import exchanging  # late: slow to import
 
-    wet = exchanging.py_func(largest_R, material.saturation)
+    wet = exchanging(largest_R, material.saturation)
     drift = max(material.v + material.Gamma * max(largest_R, 0.0), material.gamma * wet)
     spread = max(material.D, material.kappa * wet)
     rate = 32 / 15 * drift / dx + 272 / 45 * spread / dx**2

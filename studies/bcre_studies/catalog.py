@@ -41,6 +41,11 @@ STUDIES = {
     "opening_angle": Entry(
         "validation.opening_angle.study", "The angle at which an avalanche opens on a plane"
     ),
+    "poured_heap": Entry("validation.poured_heap.study", "Which flow rules keep a heap round?"),
+    "plane_agreement": Entry(
+        "validation.plane_agreement",
+        "A pulse on a plane in both models: the direction of the cells' diffusion",
+    ),
     "choices": Entry(
         "validation.choices", "Do the verdicts stand when our own choices are halved and doubled?"
     ),

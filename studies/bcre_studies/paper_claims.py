@@ -202,6 +202,7 @@ PAPER_CLAIMS = (
             ("paper_figures", "figure1 profile at t = 250, effective"),
             ("paper_figures", "figure1 climb, effective"),
             ("opening_angle", "opening angle, figure 1"),
+            ("plane_agreement", "figure 1, later on a plane"),
         ),
         remarks={
             CONDITIONAL: "with cell size counted, at a cell Peclet number of 1, and up to t = 200; "
@@ -220,7 +221,11 @@ PAPER_CLAIMS = (
             ("paper_figures", "figure3 profile"),
             ("repose_return", "final slope"),
         ),
-        measured=(("second_critical_angle", "second critical slope, figures 2 and 3"),),
+        measured=(
+            ("second_critical_angle", "second critical slope, figures 2 and 3"),
+            ("plane_agreement", "figure 2 on a plane"),
+            ("plane_agreement", "figure 3 on a plane"),
+        ),
         remarks={
             CONDITIONAL: "with cell size counted, which at their cell Peclet number of 25 makes D "
             "seven times what it is; Sd differs even then, but at 89.7 degrees and more, where no "
@@ -250,7 +255,10 @@ PAPER_CLAIMS = (
             ("second_critical_angle", "second critical slope, other materials"),
             ("roughness_decay", "short waves"),
         ),
-        measured=(("opening_angle", "opening angle, other materials"),),
+        measured=(
+            ("opening_angle", "opening angle, other materials"),
+            ("plane_agreement", "an isotropic D_eff"),
+        ),
         remarks={
             REFUTED: "with cell size counted it does up to a cell Peclet number of about 1 and "
             "for waves of twelve cells or more, beyond which the expansion in d ends"

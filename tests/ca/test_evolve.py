@@ -74,12 +74,12 @@ def test_advance_counts_steps_time_and_outflow(figure_1):
 @pytest.mark.parametrize(
     ("h", "R", "message"),
     [
-        ([1.0, 2.0], [1.0], r"shape \((1, )?2,?\), R \((1, )?1,?\): must be equal"),
+        ([1.0, 2.0], [1.0], r"R has shape \((1, )?1,?\): must be that of h, \((1, )?2,?\)"),
         ([], [], r"shape \((1, )?0,?\)"),
         ([[[1.0, 2.0]]], [[[1.0, 2.0]]], r"shape \((1, )?1, 1, 2\)"),
         ([1.0, math.nan], [1.0, 1.0], "finite"),
         ([1.0, 2.0], [1.0, math.inf], "finite"),
-        ([0.0, 0.0], [0.0, -0.5], r"R = -0.5: must be >= 0"),
+        ([0.0, 0.0], [0.0, -0.5], r"R = -0\.5 in cell (1|\(0, 1\)): must be >= 0"),
     ],
 )
 def test_layers_that_make_no_pile_are_refused(h, R, message):
@@ -95,7 +95,7 @@ def test_a_plane_is_not_taken_for_a_batch_of_lines_nor_a_line_for_one():
         evolve(plane, plane, FIGURE_1, 1)
     with pytest.raises(ValueError, match=r"h has shape \(3, 4\): must be \(N,\)"):
         march(plane, plane, FIGURE_1, 1)
-    with pytest.raises(ValueError, match=r"h has shape \(4,\), .* must be equal, \(piles, N\)"):
+    with pytest.raises(ValueError, match=r"h has shape \(4,\): must be \(piles, N\)"):
         evolve_many(plane[0], plane[0], FIGURE_1, 1)
 
 

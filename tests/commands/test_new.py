@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bcre_studies.models.registry import chosen
 from bcre_studies.scenes.scene import load
 
 UNEVEN = np.cumsum(np.random.default_rng(3).uniform(0.5, 3.0, 60)) - 0.5
@@ -34,7 +35,8 @@ def test_every_line_that_is_switched_off_may_be_switched_on(bcre):
     assert switched != text
     Path("all.toml").write_text(switched, encoding="utf-8")
     scene = load("all.toml")
-    assert scene.source[0].rate > 0
+    for model in chosen("both"):
+        model.adapter().require_admitted(scene)
     assert (scene.material.kappa, scene.automaton.scheme) == (0.01, "limited")
 
 
@@ -50,11 +52,11 @@ def test_scene_of_a_survey_starts_from_its_rows(bcre):
     assert bcre("run", "scenes/gully.toml", "--model", "ca").code == 0
 
 
-@pytest.mark.parametrize("name", ["taken", "taken.toml", "link", "figure1"])
+@pytest.mark.parametrize("name", ["taken", "taken.toml", "link", "figure1", "", "."])
 def test_nothing_is_overwritten(bcre, name):
     Path("taken.toml").write_text("mine", encoding="utf-8")
     Path("link.toml").symlink_to("nowhere")
-    assert bcre("new", name).refusal.startswith(f"NAME = '{name}': ")
+    assert bcre("new", name).refusal.startswith(f"NAME = '{name or '.'}': ")
     assert Path("taken.toml").read_text(encoding="utf-8") == "mine"
     assert not Path("nowhere").exists()
 

@@ -188,9 +188,9 @@ def test_no_step_leaves_the_layers_alone():
     [
         ({"dt": 0.0}, r"^dt = 0.0: must be a finite number > 0"),
         ({"dx": math.nan}, r"^dx = nan: must be a finite number > 0"),
-        ({"steps": -1}, r"^steps = -1: must be >= 0"),
+        ({"steps": -1}, r"^steps = -1: must be a whole number, at least 0"),
         ({"method": "BDF"}, r"^method = 'BDF': must be explicit"),
-        ({"u": np.zeros(7)}, r"^cells = 7: BCRE needs at least 8 cells"),
+        ({"u": np.zeros(7)}, r"^cells = 7: must be a whole number, at least 8"),
     ],
 )
 def test_bad_argument_is_refused_with_its_name_and_value(options, message):

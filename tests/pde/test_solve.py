@@ -219,7 +219,7 @@ def test_bad_problem_is_refused_with_its_name_and_value(options, message):
 
 
 def test_start_that_is_not_finite_is_refused():
-    with pytest.raises(ValueError, match="initial h and R must be finite"):
+    with pytest.raises(ValueError, match="initial h must be finite"):
         solve(problem(lambda x: (np.full_like(x, math.nan), x)), [1.0], 40)
 
 

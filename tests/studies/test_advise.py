@@ -165,6 +165,12 @@ def test_past_a_scarp_advice_is_against_a_named_kappa_that_the_advised_scene_has
     assert load(path).material.kappa == 0.01
 
 
+@pytest.mark.parametrize("change", [{"ends": "wall"}, {"Gamma": 0.5}])
+def test_what_no_closed_form_holds_has_none(change):
+    assert closed_form(load("figure2")) is not None
+    assert closed_form(load("figure2").with_changes(**change)) is None
+
+
 def test_advice_that_is_resolved_keeps_the_scene_as_it_is():
     assert advise_with_reference(Question(load("figure2")), counted()).instead_of is None
     gone = advise_with_reference(Question(load("pulse_at_repose")), counted())

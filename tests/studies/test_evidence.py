@@ -96,6 +96,55 @@ def same_as_automaton(*columns):
 
 TURNS = [
     Turn(
+        "agreement_map",
+        "slope at which a pulse runs to the top",
+        AGREE,
+        of(quantity="s at which it runs to the top"),
+        {"difference": 0.01},
+        said=("differ by 1% to 1%",),
+    ),
+    Turn(
+        "avalanche_statistics",
+        "oscillation between two slopes",
+        AGREE,
+        all_rows,
+        {"start": 1.76, "gap": 32.5, "size": 0.765, "start_band": 0.0, "gap_band": 0.0},
+    ),
+    Turn(
+        "opening_angle",
+        "opening angle, figure 1",
+        AGREE,
+        all_rows,
+        {"verdict": "agree"},
+    ),
+    Turn(
+        "plane_agreement", "figure 2 on a plane", AGREE, of(case="figure 2"), {"verdict": "agree"}
+    ),
+    Turn(
+        "poured_heap",
+        "poured heap, d8",
+        AGREE,
+        of(quantity="poured heap", flow="d8"),
+        {"difference": lambda rows: 0.01 * rows["d"]},
+        gone=("octagons",),
+    ),
+    Turn(
+        "sensitivity",
+        "time step",
+        DISAGREE,
+        of(parameter="dt"),
+        {"total_order_low": 0.2, "total_order": 0.3, "total_order_high": 0.4},
+        said=("0.30 (0.20 to 0.40)",),
+    ),
+    Turn(
+        "error_estimate",
+        "coverage past t*",
+        DISAGREE,
+        of(regime="past t*", quantity="R", rule="two triples and more"),
+        {"covered": 0.9},
+        said=("R: 90.0%",),
+    ),
+    Turn(
         "paper_figures",
         "calibrated scheme",
         AGREE,

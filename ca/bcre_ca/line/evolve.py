@@ -4,13 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Literal
+from numbers import Real
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from bcre_ca.gate import (
+    ascending,
+    layers_of,
+    numbers_of,
+    require,
+    require_kind,
+    require_start,
+    whole,
+)
 from bcre_ca.line import kernels
-from bcre_ca.line.pile import Pile, layers_of, require_ends, whole
+from bcre_ca.line.pile import Pile, checked, line_of, require_ends
 from bcre_ca.line.recording import Recording
 from bcre_ca.line.refusal import raise_outgrown, require_stable
 from bcre_ca.line.sources import Source, stretches, supply_of
@@ -49,13 +59,16 @@ def evolve(
     FloatingPointError
         where the layers have outgrown dt by the end, or after any :data:`BLOCK` steps.
     ValueError
-        for layers of unequal or wrong shape, empty or not finite.
+        naming the argument, for layers of unequal or wrong shape, empty, masked, not finite or
+        negative in R, and for other arguments that are not allowed.
     """
-    static, rolling = layers_of(h, R, rank=1)
-    steps = whole(steps)
+    require_kind("rule", rule, Rule)
+    static, rolling = line_of(h, R)
+    require_start(static, rolling)
+    steps = whole("steps", steps)
     require_ends(ends)
     if frozen is not None:
-        surface = np.asarray(frozen, static.dtype)
+        surface = numbers_of("frozen", frozen).astype(static.dtype)
         return _evolve_frozen(static, rolling, rule, steps, ends, surface)
     require_stable(static, rolling, rule, ends)
     start = static.copy(), rolling.copy()
@@ -71,11 +84,14 @@ def evolve_many(
 
     The piles do not touch each other; they are shared out among the processors.
     """
-    static, rolling = layers_of(h, R, rank=2)
+    static, rolling = layers_of(h, R, 2, "(piles, N) with N >= 1")
+    require_start(static, rolling)
     rules = [rule] * len(static) if isinstance(rule, Rule) else list(rule)
+    for one in rules:
+        require_kind("rule", one, Rule)
     if len(rules) != len(static):
         raise ValueError(f"rule: there are {len(rules)} for {len(static)} piles; must be as many")
-    steps = whole(steps)
+    steps = whole("steps", steps)
     require_ends(ends)
     is_stable = [one.dt for one in rules] <= kernels.stable_steps(static, rolling, rules, ends)
     for i in np.flatnonzero(~is_stable):  # or not finite, or stable but for rounding
@@ -92,9 +108,16 @@ def march(h: Array, R: Array, rule: Rule, steps: int, ends: Ends = "open") -> fl
     """Take steps in place, stable or not; h and R are contiguous arrays of shape (N,).
 
     Returns what left through the foot, in units of R (times d: an area).
+
+    Raises
+    ------
+    ValueError
+        naming the argument, for layers that cannot be changed in place.
     """
-    if h.ndim != 1:
-        raise ValueError(f"h has shape {h.shape}: must be (N,)")
+    require_kind("rule", rule, Rule)
+    require_ends(ends)
+    steps = whole("steps", steps)
+    _require_in_place(h, R)
     account = np.zeros(2)
     kernels.march(h, R, rule, steps, ends, account)
     return float(account[0])
@@ -108,8 +131,7 @@ def advance(pile: Pile, rule: Rule, steps: int, ends: Ends = "open") -> Pile:
     FloatingPointError
         where the layers are no longer finite, naming cell, time and the bound that was passed.
     """
-    steps = whole(steps)
-    require_ends(ends)
+    pile = checked(pile)
     h, R = pile.h.copy(), pile.R.copy()
     outflow = march(h, R, rule, steps, ends) * rule.d
     if not (np.isfinite(h).all() and np.isfinite(R).all()):
@@ -152,13 +174,15 @@ def frames(
     ValueError
         for sources beyond the line or between joined ends.
     """
-    wanted = [float(time) for time in times]
-    for before, time in zip([pile.t, *wanted], wanted, strict=False):
-        if not before <= time < np.inf:
-            raise ValueError(f"times = {wanted!r}: must ascend from t = {pile.t!r}")
+    require_kind("rule", rule, Rule)
+    require_ends(ends)
+    pile = checked(pile)
+    wanted = ascending(times, pile.t)
+    if not (isinstance(margin, Real) and 0 < margin <= 1):
+        raise ValueError(f"margin = {margin!r}: must be a number > 0 and at most 1")
     fixed = 0.0
-    if step != "auto":
-        rule = replace(rule, dt=step)
+    if not (isinstance(step, str) and step == "auto"):
+        rule = rule.with_step(step)
         supply = supply_of(sources, pile.t, pile.h.size, rule.d)
         require_stable(pile.h, pile.R, rule, ends, supply)
         fixed = float(rule.dt)
@@ -190,7 +214,36 @@ def _poured_on(
 
 def largest_stable_step(pile: Pile, rule: Rule, ends: Ends) -> float:
     """:meth:`Rule.max_stable_step` for this pile; NaN where it is not finite."""
-    return kernels.stable_step(pile.h, pile.R, rule, ends)
+    require_kind("rule", rule, Rule)
+    require_kind("pile", pile, Pile)
+    require_ends(ends)
+    return kernels.stable_step(*line_of(pile.h, pile.R), rule, ends)
+
+
+def stepped_cells(R: ArrayLike) -> int:
+    """Cells that a block of steps of a synchronous rule visits: the wet ones and those in reach."""
+    layer = numbers_of("R", R)
+    if layer.ndim != 1:
+        raise ValueError(f"R has shape {layer.shape}: must be (N,)")
+    return kernels.stepped_cells(layer)
+
+
+def _require_in_place(h: Any, R: Any) -> None:
+    """Raise ValueError where compiled code could not change the layers where they are."""
+    for name, layer in (("h", h), ("R", R)):
+        require_kind(name, layer, np.ndarray)
+        if numbers_of(name, layer).dtype not in (np.float64, np.float32):
+            raise ValueError(f"{name} has the type {layer.dtype}: must be float64 or float32")
+        if layer.ndim != 1 or not layer.size:
+            raise ValueError(f"{name} has shape {layer.shape}: must be (N,) with N >= 1")
+        if not (layer.flags.c_contiguous and layer.flags.writeable):
+            raise ValueError(f"{name}: must be contiguous and writeable, to be changed in place")
+    if h.shape != R.shape or h.dtype != R.dtype:
+        raise ValueError(
+            f"R has shape {R.shape} and type {R.dtype}: must be those of h, {h.shape} and {h.dtype}"
+        )
+    if np.may_share_memory(h, R):
+        raise ValueError("R: must not share its memory with h")
 
 
 def _evolve_frozen(
@@ -200,6 +253,7 @@ def _evolve_frozen(
     rule.require_upwind("a frozen slope")
     if surface.shape != h.shape:
         raise ValueError(f"frozen has shape {surface.shape}: must be that of h, {h.shape}")
+    require("frozen", surface, np.isfinite(surface), "must be finite")
     require_stable(surface, np.zeros_like(R), rule, ends)
     kernels.march_frozen(h, R, rule, steps, ends, surface)
     if not (np.isfinite(h).all() and np.isfinite(R).all()):

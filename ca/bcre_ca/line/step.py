@@ -28,8 +28,10 @@ from numpy.typing import NDArray
 
 from bcre_ca.coefficients import fold
 from bcre_ca.exchange import carried, deposit_thin, eroded, eroded_at_foot, leaving
+from bcre_ca.gate import require_kind
 from bcre_ca.line import container, second_order, slope_driven
 from bcre_ca.line.drops import drops, period_drop
+from bcre_ca.line.pile import line_of, require_ends
 from bcre_ca.rule import Ends, Rule
 from bcre_ca.schemes import InContainer, SlopeDriven
 
@@ -59,12 +61,21 @@ def step(
     h, R: the new layers, shape (N,).
     outflow: what left through the foot, in units of R (times d: an area).
 
+    Raises
+    ------
+    ValueError
+        naming the argument, where it is not what is asked for.
+
     >>> rule = Rule(v=1.0, D=0.0, gamma=0.1, Sc=0.5, d=1.0, dt=0.5)
     >>> step(np.array([3.0, 2.0, 1.5]), np.array([0.0, 1.0, 0.0]), rule)
     (array([3. , 2. , 1.5]), array([0. , 0.5, 0.5]), 0.0)
     """
+    require_kind("rule", rule, Rule)
+    require_ends(ends)
+    h, R = line_of(h, R)
     if frozen is not None:
         rule.require_upwind("a frozen slope")
+        frozen, _ = line_of(frozen, R)
     p = container.parameters_of(rule, ends, h.size, supply)
     if isinstance(p.scheme, SlopeDriven):
         return slope_driven.step(h, R, fold(p, float(rule.dt)))

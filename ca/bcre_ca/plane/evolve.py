@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from bcre_ca.gate import ascending, numbers_of, whole
 from bcre_ca.plane.layers import Sand
 from bcre_ca.plane.run import BLOCK, Run
 from bcre_ca.plane.setting import Plane
@@ -46,10 +47,9 @@ def evolve(
         where dt cannot be stable for this start, naming a cell; FloatingPointError where the layers
         outgrow it; ValueError for layers that are not what is asked for, naming the layer.
     """
-    _require_steps(steps)
-    run = Run(Sand(np.asarray(h), np.asarray(R)), plane, threads)
+    left = whole("steps", steps)
+    run = Run(Sand(numbers_of("h", h), numbers_of("R", R)), plane, threads)
     run.require_stable(plane.rule.dt)
-    left = int(steps)
     while left > 0:
         part = left if run.is_at_rest else min(BLOCK, left)
         run.take(part)
@@ -66,9 +66,9 @@ def advance(sand: Sand, plane: Plane, steps: int, threads: int | None = None) ->
     FloatingPointError
         where the layers are no longer finite, naming a cell.
     """
-    _require_steps(steps)
+    steps = whole("steps", steps)
     run = Run(sand, plane, threads)
-    run.take(int(steps))
+    run.take(steps)
     end = run.sand()
     finite = np.isfinite(end.h) & np.isfinite(end.R)
     if not finite.all():
@@ -100,14 +100,11 @@ def frames(
     FloatingPointError
         for a fixed step that the avalanche outgrew, naming time, cell and bound.
     """
-    wanted = [float(time) for time in times]
-    for before, time in zip([sand.t, *wanted], wanted, strict=False):
-        if not before <= time < math.inf:
-            raise ValueError(f"times = {wanted!r}: must ascend from t = {sand.t!r}")
     run = Run(sand, plane, threads)
-    if step == "auto":
+    wanted = ascending(times, sand.t)
+    if isinstance(step, str) and step == "auto":
         return _followed(run, wanted)
-    fixed = float(replace(plane.rule, dt=step).dt)
+    fixed = plane.rule.with_step(step).dt
     run.require_stable(fixed)
     return _fixed(run, wanted, fixed)
 
@@ -194,8 +191,3 @@ def _require_outlasted(run: Run, dt: float) -> None:
         raise FloatingPointError(
             f"the avalanche has outgrown the step by t = {run.t:.6g}: {outgrown}"
         ) from None
-
-
-def _require_steps(steps: Any) -> None:
-    if isinstance(steps, bool) or steps != int(steps) or steps < 0:
-        raise ValueError(f"steps = {steps!r}: must be a whole number >= 0")

@@ -8,12 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from bcre_ca.gate import DENORMAL, numbers_of, require, require_kind
 from bcre_ca.plane.setting import Plane
 
 Array = NDArray[np.float64]
-
-DENORMAL = 1e-300
-"""Below this the sign of a layer is a matter of rounding among denormal numbers."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +49,8 @@ def checked(h: Any, R: Any, plane: Plane) -> tuple[Array, Array]:
     ValueError
         naming the layer, what it is and what is allowed; and the cell (i, j), where it is one.
     """
-    h, R = (_numbers(name, layer) for name, layer in (("h", h), ("R", R)))
+    require_kind("plane", plane, Plane)
+    h, R = (_layer(name, layer) for name, layer in (("h", h), ("R", R)))
     if h.shape != R.shape:
         raise ValueError(f"R has the shape {R.shape}: must be that of h, {h.shape}")
     if h.dtype != R.dtype:
@@ -61,11 +60,11 @@ def checked(h: Any, R: Any, plane: Plane) -> tuple[Array, Array]:
         if shape not in ((), h.shape):
             raise ValueError(f"{name} has the shape {shape}: must be that of h, {h.shape}")
     free = plane.free(h.shape)
-    _require("R", R, R >= -DENORMAL, "must be >= 0")
-    _require("R", R, (R == 0) | free, "must be 0 at a wall")
+    require("R", R, R >= -DENORMAL, "must be >= 0")
+    require("R", R, (R == 0) | free, "must be 0 at a wall")
     if plane.base is not None:
         lowest = base_of(plane, h.shape, h.dtype)
-        _require("h", h, (h >= lowest) | ~free, "must not lie below the base")
+        require("h", h, (h >= lowest) | ~free, "must not lie below the base")
     # Adding 0 makes -0.0 to 0.0, which a cell that stays dry would otherwise keep.
     return h + h.dtype.type(0), R + R.dtype.type(0)
 
@@ -76,17 +75,11 @@ def base_of(plane: Plane, shape: tuple[int, ...], dtype: DTypeLike) -> Array:
     return np.broadcast_to(lowest, shape).astype(dtype)
 
 
-def _numbers(name: str, layer: Any) -> Array:
-    array = np.asarray(layer)
+def _layer(name: str, values: Any) -> Array:
+    array = numbers_of(name, values)
     if array.dtype not in (np.float64, np.float32):
         raise ValueError(f"{name} has the type {array.dtype}: must be float64 or float32")
     if array.ndim != 2 or not array.size:
         raise ValueError(f"{name} has the shape {array.shape}: must be (N, M) with N, M >= 1")
-    _require(name, array, np.isfinite(array), "must be finite")
+    require(name, array, np.isfinite(array), "must be finite")
     return np.ascontiguousarray(array)
-
-
-def _require(name: str, layer: Array, holds: NDArray[np.bool_], what: str) -> None:
-    if not holds.all():
-        i, j = np.unravel_index(int(np.argmin(holds)), layer.shape)
-        raise ValueError(f"{name} = {float(layer[i, j])!r} in cell ({i}, {j}): {what}")

@@ -11,6 +11,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from bcre_ca.gate import require_kind, whole
 from bcre_ca.plane import kernels
 from bcre_ca.plane.bounds import largest_step_of, refusal
 from bcre_ca.plane.coefficients import Coefficients
@@ -60,6 +61,7 @@ class Run:
     """
 
     def __init__(self, sand: Sand, plane: Plane, threads: int | None = None) -> None:
+        require_kind("sand", sand, Sand)
         h, R = checked(sand.h, sand.R, plane)
         self.plane, self.t = plane, sand.t
         self._sand, self._poured, self._steps = sand, 0.0, 0
@@ -70,8 +72,7 @@ class Run:
         form = kernels.FORMS[plane.flow]
         if threads is None:
             threads = numba.get_num_threads() if h.size >= SHARED_FROM else 1
-        if not (isinstance(threads, int) and threads >= 1):
-            raise ValueError(f"threads = {threads!r}: must be a whole number >= 1")
+        threads = whole("threads", threads, least=1)
         if plane.ends == "periodic":
             threads, form = 1, form._replace(together=1)
         self._threads, self._work = threads, work_on(self._field, form, threads)

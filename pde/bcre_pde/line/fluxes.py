@@ -33,7 +33,7 @@ import numpy as np
 
 from bcre_pde import stencils
 from bcre_pde.exchange import exchange, exchanging
-from bcre_pde.kept import SOURCES
+from bcre_pde.kept import SOURCES, kept
 from bcre_pde.stencils import GHOSTS, face_value
 from bcre_pde.sums import weighted_sum
 
@@ -191,7 +191,7 @@ def entries(sources: str):  # type: ignore[no-untyped-def]
     Both close over ``sources``, a part of the key of their machine code: see :mod:`bcre_pde.kept`.
     """
 
-    @numba.njit(cache=True, error_model="numpy")
+    @kept()
     def rate(  # type: ignore[no-untyped-def]
         state,
         out,
@@ -227,7 +227,7 @@ def entries(sources: str):  # type: ignore[no-untyped-def]
         K = Coefficients(v, D, gamma, kappa, dx, periodic, saturation, Gamma, wall)
         _rate(state, out, padded, faces, K, supply)
 
-    @numba.njit(cache=True, error_model="numpy")
+    @kept()
     def march(  # type: ignore[no-untyped-def]
         state,
         dt,

@@ -24,6 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 from pde import CartesianGrid
 
+from bcre_pde.gate import require_not_negative
 from bcre_pde.line import heap_fluxes
 from bcre_pde.line.marched import MarchedOnLine
 from bcre_pde.problem import Array
@@ -54,9 +55,7 @@ class SlopeDriven:
 
     def __post_init__(self) -> None:
         for name in ("beta", "gamma", "Sc", "D"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value >= 0):
-                raise ValueError(f"{name} = {value!r}: must be a finite number >= 0")
+            require_not_negative(name, getattr(self, name))
 
 
 class HadelerKuttler(MarchedOnLine):

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import numba
 
-from bcre_pde.kept import SOURCES
+from bcre_pde.kept import SOURCES, kept
 from bcre_pde.stencils import GHOSTS
 
 JOINED, OPEN, WALLED = 0, 1, 2
@@ -116,7 +116,7 @@ def _carried(J, f, part):  # type: ignore[no-untyped-def]
 def entry(sources: str):  # type: ignore[no-untyped-def]
     """The compiled right-hand side; ``sources`` is a part of the key of its machine code."""
 
-    @numba.njit(cache=True, error_model="numpy")
+    @kept()
     def rate(  # type: ignore[no-untyped-def]
         state, out, padded, faces, supply, beta, gamma, Sc, D, dx, ends
     ):

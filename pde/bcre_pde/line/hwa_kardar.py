@@ -25,7 +25,8 @@ import numpy as np
 from pde import CartesianGrid, FieldCollection, SDEBase
 
 from bcre_pde.advance import advance_with_noise
-from bcre_pde.kept import SOURCES
+from bcre_pde.gate import is_finite, require_not_negative
+from bcre_pde.kept import SOURCES, kept
 from bcre_pde.line.marched import MarchedOnLine
 from bcre_pde.problem import Array, Problem
 from bcre_pde.stencils import GHOSTS, face_value
@@ -57,10 +58,8 @@ class Surface:
 
     def __post_init__(self) -> None:
         for name in ("nu", "lam", "Sc", "noise"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value >= 0):
-                raise ValueError(f"{name} = {value!r}: must be a finite number >= 0")
-        if not math.isfinite(self.level):
+            require_not_negative(name, getattr(self, name))
+        if not is_finite(self.level):
             raise ValueError(f"level = {self.level!r}: must be a finite number")
 
 
@@ -124,7 +123,7 @@ def _extend(row, cells, periodic, walled):  # type: ignore[no-untyped-def]
 def entry(sources: str):  # type: ignore[no-untyped-def]
     """The compiled right-hand side; ``sources`` is a part of the key of its machine code."""
 
-    @numba.njit(cache=True, error_model="numpy")
+    @kept()
     def rate(  # type: ignore[no-untyped-def]
         state, out, padded, flux, supply, nu, lam, level, dx, closed, periodic
     ):

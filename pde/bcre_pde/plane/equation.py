@@ -17,7 +17,7 @@ from bcre_pde.exchange import exchanging
 from bcre_pde.marched import Marched
 from bcre_pde.plane import fluxes, sums
 from bcre_pde.plane.material import Material
-from bcre_pde.plane.problem import check_cells
+from bcre_pde.plane.problem import checked_cells
 from bcre_pde.problem import Array
 
 
@@ -45,7 +45,7 @@ class BCRE(Marched):
         threads: int = 1,
         bed: tuple[Array, float] | None = None,
     ) -> None:
-        check_cells(grid.shape)
+        checked_cells(grid.shape)
         if threads < 1:
             raise ValueError(f"threads = {threads!r}: must be at least 1")
         nothing = np.zeros(grid.shape)
@@ -112,7 +112,7 @@ class BCRE(Marched):
     def largest_explicit_step(self, largest_R: float) -> float:
         """The bound of the line, with what spreads along and across added up."""
         m = self.material
-        wet = exchanging.py_func(largest_R, m.along.saturation)
+        wet = exchanging(largest_R, m.along.saturation)
         rolling = 32 / 15 * m.v / self.dx + self._spread(m.D_x, m.D_y)
         climbing = 32 / 15 * m.gamma * wet / self.dx + self._spread(m.kappa_x, m.kappa_y) * wet
         rate = max(rolling, climbing)

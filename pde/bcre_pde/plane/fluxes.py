@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numba
 import numpy as np
 
-from bcre_pde.kept import SOURCES
+from bcre_pde.kept import SOURCES, kept
 from bcre_pde.plane import across, along, bed
 from bcre_pde.stencils import GHOSTS
 
@@ -92,7 +92,7 @@ def entries(sources: str):  # type: ignore[no-untyped-def]
     ``sources`` is part of the key of their machine code on disk: see :mod:`bcre_pde.kept`.
     """
 
-    @numba.njit(cache=True, error_model="numpy")
+    @kept()
     def rate(layers, rates, base, K):  # type: ignore[no-untyped-def]
         """Write the time derivative of ``layers`` into ``rates``.
 
@@ -109,7 +109,7 @@ def entries(sources: str):  # type: ignore[no-untyped-def]
         if not K.joined_ends:
             _open_ends(layers, rates, base, K)
 
-    @numba.njit(cache=True, error_model="numpy", parallel=True)
+    @kept(parallel=True)
     def rate_on_threads(layers, rates, base, K, threads):  # type: ignore[no-untyped-def]
         """The same numbers on at most ``threads`` threads."""
         sources  # noqa: B018

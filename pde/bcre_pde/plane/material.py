@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from bcre_pde.gate import require_not_negative
 from bcre_pde.material import Material as Line
 
 
@@ -39,9 +40,7 @@ class Material:
 
     def __post_init__(self) -> None:
         for name in ("D_x", "D_y", "kappa_x", "kappa_y"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value >= 0):
-                raise ValueError(f"{name} = {value!r}: must be a finite number >= 0")
+            require_not_negative(name, getattr(self, name))
         self.along  # noqa: B018  what is left is refused there
 
     @property

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal, get_args
+from numbers import Real
+from typing import Any, Literal, get_args
 
 import numpy as np
 
+from bcre_pde.gate import is_finite, require_kind, require_positive, whole
 from bcre_pde.plane.material import Material
 from bcre_pde.problem import SMALLEST_GRID, Array, Ends
 
@@ -51,12 +53,15 @@ class Problem:
 
     def __post_init__(self) -> None:
         for name in ("length", "width"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0):
-                raise ValueError(f"{name} = {value!r}: must be a finite number > 0")
-        if not self.thickness > 0:
+            require_positive(name, getattr(self, name))
+        if not callable(self.initial):
+            raise ValueError(f"initial = {self.initial!r}: must be a function of x and y")
+        require_kind("material", self.material, Material)
+        if not (isinstance(self.thickness, Real) and self.thickness > 0):
             raise ValueError(f"thickness = {self.thickness!r}: must be > 0")
-        if self.grain is not None and not 0 < self.grain <= self.thickness:
+        if self.grain is not None and not (
+            is_finite(self.grain) and 0 < self.grain <= self.thickness
+        ):
             raise ValueError(f"grain = {self.grain!r}: must be > 0 and at most the thickness")
         for name, allowed in (("ends", get_args(Ends)), ("sides", get_args(Sides))):
             value = getattr(self, name)
@@ -64,7 +69,7 @@ class Problem:
                 raise ValueError(f"{name} = {value!r}: must be one of {allowed}")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Frame:
     """Layers ``h``, ``R`` (Nx, Ny) at the time ``t``; ``outflow``: the volume that has left."""
 
@@ -74,7 +79,7 @@ class Frame:
     outflow: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Solution:
     """Layers at the cell centres ``x`` (Nx,), ``y`` (Ny,) and the times ``t`` (T,).
 
@@ -116,10 +121,13 @@ class Solution:
         return np.array([cell * (math.fsum(h.flat) + math.fsum(R.flat)) for h, R in frames])
 
 
-def check_cells(cells: tuple[int, ...]) -> None:
-    """Refuse a grid that does not hold the stencils."""
-    if len(cells) != 2:
-        raise ValueError(f"cells = {cells!r}: must be two numbers, along and across")
-    least = (SMALLEST_ALONG, SMALLEST_ACROSS)
-    if any(n < smallest for n, smallest in zip(cells, least, strict=True)):
-        raise ValueError(f"cells = {cells!r}: must be at least {least}, along and across")
+def checked_cells(cells: Any) -> tuple[int, int]:
+    """A grid that holds the stencils; ValueError where it does not."""
+    try:
+        along, across = cells
+    except (TypeError, ValueError):
+        raise ValueError(f"cells = {cells!r}: must be two numbers, along and across") from None
+    return (
+        whole("cells along", along, SMALLEST_ALONG),
+        whole("cells across", across, SMALLEST_ACROSS),
+    )

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bcre_pde.plane.problem import Frame, Problem, Solution, check_cells
-from bcre_pde.problem import Array
-from bcre_pde.solve import MOST_EVALUATIONS, TOLERANCE, ascending
+from bcre_pde.gate import ascending, initial_layers, require_kind, require_tolerance, whole
+from bcre_pde.plane.problem import Frame, Problem, Solution, checked_cells
+from bcre_pde.solve import MOST_EVALUATIONS, TOLERANCE
 
 if TYPE_CHECKING:
     from pde import CartesianGrid, FieldCollection
@@ -55,9 +55,9 @@ def march(
         where the solver gave up; ValueError, at once, for arguments that are not allowed.
     """
     ordered = ascending(times)
-    if not 0 < tolerance < 1:
-        raise ValueError(f"tolerance = {tolerance!r}: must lie between 0 and 1")
-    check_cells(cells)
+    require_kind("problem", problem, Problem)
+    require_tolerance(tolerance)
+    cells, threads = checked_cells(cells), whole("threads", threads, 1)
     from bcre_pde.plane.equation import BCRE
 
     joined = problem.ends == "periodic", problem.sides == "periodic"
@@ -147,21 +147,8 @@ def _initial_state(problem: Problem, grid: CartesianGrid) -> FieldCollection:
     from bcre_pde.plane.equation import BCRE
 
     x, y = grid.cell_coords[..., 0], grid.cell_coords[..., 1]
-    h, R = _layers(problem, x, y)
+    h, R = initial_layers(problem.initial(x, y), x.shape)
     foot = np.full((1, y.shape[1]), problem.length)
-    h_foot, _ = _layers(problem, foot, y[:1])
+    h_foot, _ = initial_layers(problem.initial(foot, y[:1]), foot.shape)
     Sc = problem.material.Sc
     return BCRE.state(grid, h + Sc * x, R, h_foot[0] + Sc * problem.length)
-
-
-def _layers(problem: Problem, x: Array, y: Array) -> tuple[Array, Array]:
-    """The initial h and R at these positions, of their shape."""
-    layers = []
-    for name, values in zip("hR", problem.initial(x, y), strict=True):
-        values = np.asarray(values, dtype=float)
-        if values.shape != x.shape:
-            raise ValueError(f"initial {name} has the shape {values.shape}: must be {x.shape}")
-        if not np.isfinite(values).all():
-            raise ValueError("the initial h and R must be finite")
-        layers.append(values)
-    return layers[0], layers[1]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numba
 
+from bcre_pde.kept import kept
+
 
 @numba.njit(error_model="numpy")
 def _sum_of_row(start, terms, field, i, weights, count, dt, out):  # type: ignore[no-untyped-def]
@@ -33,13 +35,13 @@ def _sum_of_rows(  # type: ignore[no-untyped-def]
             _sum_of_row(start, terms, 2, i, weights, count, dt, out)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kept()
 def weighted_sum(start, terms, weights, count, dt, out):  # type: ignore[no-untyped-def]
     """What :func:`bcre_pde.sums.weighted_sum` does, for fields of shape (3, rows, columns)."""
     _sum_of_rows(start, terms, weights, count, dt, out, 0, out.shape[1])
 
 
-@numba.njit(cache=True, error_model="numpy", parallel=True)
+@kept(parallel=True)
 def weighted_sum_on_threads(  # type: ignore[no-untyped-def]
     start, terms, weights, count, dt, out, threads
 ):

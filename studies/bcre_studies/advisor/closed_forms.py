@@ -67,6 +67,8 @@ def _frozen_slope(scene: Scene) -> ClosedForm | None:
     m = scene.material
     even = all(isinstance(term, Incline) for term in scene.surface)
     known = (Gaussian, Uniform) if scene.domain.ends == "periodic" else (Gaussian,)
+    if scene.source or m.Gamma or scene.domain.ends == "wall":
+        return None
     if not scene.rolling or not all(isinstance(term, known) for term in scene.rolling):
         return None
     if not (even or m.gamma == m.kappa == 0):
@@ -117,7 +119,7 @@ def _carried(term: object, scene: Scene, x: Array, t: float) -> Array:
 
 def _climbing_wave(scene: Scene) -> ClosedForm | None:
     m, length = scene.material, scene.domain.length
-    if m.D or m.kappa or m.gamma == 0 or scene.domain.ends != "periodic":
+    if m.D or m.kappa or m.gamma == 0 or scene.domain.ends != "periodic" or scene.source:
         return None
     x = scene.centres(4096)
     h, R = scene.initial(x)

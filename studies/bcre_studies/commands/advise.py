@@ -23,7 +23,7 @@ from bcre_studies.commands import options
     show_default=True,
     help="R, h, slope, roughness, front, eroded, reach or top.",
 )
-@click.option("--budget", metavar="TIME", help="Time per frame, e.g. 16ms: as accurate as it lets.")
+@click.option("--budget", metavar="TIME", help="Time per frame, e.g. 16ms: asks for accuracy.")
 @options.frames
 @options.assignments
 @click.option(
@@ -40,7 +40,10 @@ def advise(
     assignments: tuple[str, ...],
     out: Path | None,
 ) -> None:
-    """Which model and cells answer SCENE to a tolerance at the least cost; by short pilots."""
+    """Say which model and cells answer SCENE to a tolerance at the least cost.
+
+    Short runs of every model find it, each against a refined solution of BCRE.
+    """
     from bcre_studies.advisor.advice_text import advised_of, answer
     from bcre_studies.advisor.question import Question, seconds_of
     from bcre_studies.running.place import Origin, require_apart, require_own

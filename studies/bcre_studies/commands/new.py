@@ -23,6 +23,8 @@ def new(name: Path, survey: Path | None) -> None:
     from bcre_studies.scenes.listing import path_of
     from bcre_studies.system.files import require_writable
 
+    if not name.name:
+        raise click.UsageError(f"NAME = {str(name)!r}: must be the name of a new file")
     path = name if name.suffix == ".toml" else name.with_name(f"{name.name}.toml")
     if path.exists() or path.is_symlink():
         raise click.UsageError(f"NAME = {str(name)!r}: {path} exists; must be a new file")

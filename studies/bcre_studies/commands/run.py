@@ -64,7 +64,7 @@ def run(
     done = command.run(origin, model, frames, folder, out is None, animate)
     if as_json:
         files = [path.as_posix() for path in done.files]
-        click.echo(json.dumps(done.record | {"files": files}, indent=2))
+        click.echo(json.dumps(done.record | {"notes": list(done.notes), "files": files}, indent=2))
     elif not quiet:
         _say(done)
     if show:

@@ -71,6 +71,8 @@ def _draw_layer(axes: Axes, layer: Layer, runs: Sequence[Run], frames: list[int]
     axes.set_title(layer.name, loc="left")
     axes.set_ylabel(axis_label(layer.symbol, runs[0]))
     axes.margins(x=0)
+    if layer is ROLLING and not any(run.R.any() for run in runs):
+        axes.text(0.5, 0.6, "none in this run", transform=axes.transAxes, ha="center", color="0.4")
 
 
 def _draw_difference(axes: Axes, layer: Layer, runs: Sequence[Run], frames: list[int]) -> None:

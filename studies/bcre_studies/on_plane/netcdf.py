@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from io import BytesIO
 
-import numpy as np
 import xarray as xr
 
-from bcre_studies.models.plane.run import PlaneRun
+from bcre_studies.models.plane.run import LAYERS, PlaneRun
 from bcre_studies.models.registry import AUTOMATON
 
-LAYERS = {"h": "static layer", "R": "rolling layer"}
 ENCODING = {"zlib": True, "complevel": 4, "shuffle": True}
 
 
@@ -29,29 +27,18 @@ def dataset(runs: Sequence[PlaneRun]) -> xr.Dataset:
     ``h`` and ``R`` are the automaton's, ``h_pde`` and ``R_pde`` those of BCRE; ``wall`` (y, x) is
     1 where no sand can be.
     """
-    scene = runs[0].scene
-    at, units = scene.domain.centres(), scene.units
-    frames = xr.Dataset(
-        coords={
-            "t": ("t", runs[0].t, {"long_name": "time", "units": units.time}),
-            "y": ("y", at.y.ravel(), {"long_name": "across", "units": units.length}),
-            "x": ("x", at.x.ravel(), {"long_name": "downhill", "units": units.length}),
-        },
-        attrs={
-            "title": scene.title,
-            "source": "bcre run",
-            "Conventions": "CF-1.11",
-        },
-    )
+    first = runs[0].to_xarray()
+    frames = first[["t", "y", "x"]]
+    frames.attrs = {
+        "title": first.attrs["title"],
+        "source": "bcre run",
+        "Conventions": "CF-1.11",
+    }
     for run in runs:
         suffix, whose = ("", "automaton") if run.model == AUTOMATON.name else ("_pde", "BCRE")
-        for name, layer in LAYERS.items():
-            values = np.swapaxes(getattr(run, name), 1, 2)
-            about = {"long_name": f"{layer}, {whose}", "units": units.length}
-            frames[name + suffix] = (("t", "y", "x"), values, about)
-    frames["wall"] = (
-        ("y", "x"),
-        scene.walls().T.astype(np.int8),
-        {"long_name": "wall, 1 where no sand can be"},
-    )
+        layers = run.to_xarray()
+        for name in LAYERS:
+            frames[name + suffix] = layers[name]
+            frames[name + suffix].attrs["long_name"] += f", {whose}"
+    frames["wall"] = first["wall"]
     return frames

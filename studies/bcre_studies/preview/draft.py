@@ -86,8 +86,6 @@ def _values(length: float, spacing: float, relief: float) -> dict[str, str]:
         "amplitude": significant(relief / 1000, 1),
         "centre": significant(length / 4, 2),
         "width": significant(max(4 * d, length / 30), 2),
-        "rate": significant(relief / 1000, 1),
-        "pour": significant(length / 2, 2),
     }
     texts = {name: repr(float(value)) for name, value in numbers.items()}
     return texts | {"cells": str(cells), "fine": str(4 * cells)}

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from bcre_studies.comparison.rounding import significant
-from bcre_studies.models.registry import BOTH
+from bcre_studies.models.registry import BOTH, chosen
 from bcre_studies.preview import equations
 from bcre_studies.preview.cells import TOLERANCE, cells_needed
 from bcre_studies.preview.effort import Effort, memory, of_automaton, of_bcre
@@ -28,7 +28,14 @@ def lines(scene: Scene, frames: int, source: str) -> Iterator[Line]:
     Parameters
     ----------
     source: what the scene is called on the command line.
+
+    Raises
+    ------
+    SceneError
+        where the automaton or BCRE does not have what the scene asks for.
     """
+    for model in chosen(BOTH):
+        model.adapter().require_admitted(scene)
     numbers = numbers_of(scene)
     yield "scene", one_line(scene.title)
     for name, rows in equations.of(scene, numbers.rule):

@@ -64,6 +64,8 @@ class Chunk:
 class Stream:
     """Measures cases on workers; ``repeated`` counts those that a dead worker had under way.
 
+    ``tasks`` counts the chunks sent out.
+
     Parameters
     ----------
     measure: returns the row of a case; its exceptions are the reasons of failed ones.
@@ -77,6 +79,7 @@ class Stream:
     version_of: Callable[[], str]
     cases: int = 0
     seconds: float = 0.0
+    tasks: int = 0
     repeated: int = 0
     _flying: dict[Future[Outcome], Chunk] = field(default_factory=dict)
     _suspects: deque[Chunk] = field(default_factory=deque)
@@ -126,6 +129,7 @@ class Stream:
     def _submit(self, chunk: Chunk) -> None:
         future = self.workers.submit(measure_chunk, self.measure, chunk.cases, self.version_of)
         self._flying[future] = chunk
+        self.tasks += 1
 
     def _outcome(self, future: Future[Outcome], chunk: Chunk) -> list[Measured]:
         try:

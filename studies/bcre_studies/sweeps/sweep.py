@@ -6,7 +6,7 @@ import itertools
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -73,6 +73,7 @@ class Account:
     ----------
     measured, failed, repeated: points of this run; ``repeated`` are those of dead workers.
     found: points that were there before; ``damaged`` files were thrown away.
+    tasks: chunks of points sent to workers.
     seconds: from first to last point; ``busy_s`` is what the points took, over all workers.
     """
 
@@ -83,6 +84,7 @@ class Account:
     measured: int = 0
     failed: int = 0
     repeated: int = 0
+    tasks: int = 0
     seconds: float = 0.0
     busy_s: float = 0.0
 
@@ -131,6 +133,12 @@ def estimate(sweep: Sweep, scheduler: str | None) -> str:
 def version_of(module: str) -> str:
     """The release, and a digest of the sources that the module's results depend on."""
     return f"{release()}+{sources.digest(module)[:16]}"
+
+
+@cache
+def _version_there(module: str) -> str:
+    """A worker's, which imports its modules once; to read all sources takes a tenth of a chunk."""
+    return version_of(module)
 
 
 @dataclass
@@ -185,12 +193,13 @@ def _measure(
         finally:
             writer.write()
             account.seconds = time.monotonic() - began
-            account.busy_s, account.repeated = stream.seconds, stream.repeated
+            account.busy_s, account.tasks = stream.seconds, stream.tasks
+            account.repeated = stream.repeated
 
 
 def _stream(sweep: Sweep, workers: Workers) -> Stream:
-    version_there = partial(version_of, sweep.module)
-    return Stream(workers, sweep.measure, version_there(), version_there)
+    there = partial(_version_there, sweep.module)
+    return Stream(workers, sweep.measure, version_of(sweep.module), there)
 
 
 def _cases(sweep: Sweep, numbers: Sequence[int]) -> Iterator[tuple[int, Any]]:

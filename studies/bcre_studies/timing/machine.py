@@ -15,8 +15,9 @@ from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-import numba
 import numpy as np
+
+from bcre_ca.kept import kept
 
 ADDITIONS_A_CELL = 7
 """1 in the flux, 2 in the slope, 1 for h, 3 for R."""
@@ -69,7 +70,7 @@ def memory_pass(cells: int = 10_000_000) -> Load:
     return Load(lambda: _pass_over(h, R, 1e-3), 32.0 * cells)
 
 
-@numba.njit(cache=True)
+@kept
 def _add_up(start, end, a, b, passes):  # type: ignore[no-untyped-def]
     for _ in range(passes):
         for i in range(start.size):
@@ -77,7 +78,7 @@ def _add_up(start, end, a, b, passes):  # type: ignore[no-untyped-def]
             end[i] = (((((((half + a) + b) + a) + b) + a) + b) + a) + b
 
 
-@numba.njit(cache=True)
+@kept
 def _pass_over(h, R, share):  # type: ignore[no-untyped-def]
     for i in range(h.size):
         exchange = share * R[i]

@@ -83,7 +83,7 @@ class Case(NamedTuple):
 def cases() -> tuple[Case, ...]:
     """All of them."""
     hump = exact.climbing_hump(v=1.0, gamma=0.5, height=0.3, width=1.5, length=20.0, until=2.0)
-    breaking = simple_wave.breaking_time(0.5 * 0.3 / 1.5 * math.sqrt(2 / math.e))
+    breaking = simple_wave.breaking_time(0.5 * 0.3 / 1.5 * float(np.sqrt(2 / math.e)))
     smooth = (
         exact.rolling_mode(wavenumber=0.5, v=1.0, D=0.1),
         exact.frozen_slope_release(excess=0.6, v=1.0, D=0.3, gamma=0.2),

@@ -90,7 +90,7 @@ class BCRE(Marched):
         Where grains turn back, R and h make waves of the speed sqrt(2 gamma Sc v R/s) besides.
         """
         m = self.material
-        wet = exchanging.py_func(largest_R, m.saturation)
+        wet = exchanging(largest_R, m.saturation)
         fastest = max(2 * m.v, m.gamma * wet)
         fastest += math.sqrt(2 * m.gamma * m.Sc * m.v * wet / self.turning)
         rate = 32 / 15 * fastest / self.dr + 272 / 45 * m.D / self.dr**2

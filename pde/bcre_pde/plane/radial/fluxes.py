@@ -25,7 +25,7 @@ import numba
 import numpy as np
 
 from bcre_pde.exchange import exchange
-from bcre_pde.kept import SOURCES
+from bcre_pde.kept import SOURCES, kept
 from bcre_pde.stencils import GHOSTS, face_value
 
 _compiled = numba.njit(error_model="numpy")
@@ -141,7 +141,7 @@ def _steepest(h, i, K):  # type: ignore[no-untyped-def]
 def entry(sources: str):  # type: ignore[no-untyped-def]
     """The compiled right-hand side; ``sources`` as in :mod:`bcre_pde.kept`."""
 
-    @numba.njit(cache=True, error_model="numpy")
+    @kept()
     def rate(layers, rates, supply, K):  # type: ignore[no-untyped-def]
         """Write the time derivative of ``layers`` into ``rates``.
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from numbers import Real
 from typing import Literal, get_args
 
 import numpy as np
 
+from bcre_pde.gate import initial_layers, require_kind, require_positive
 from bcre_pde.material import Material
 from bcre_pde.problem import Array
 
@@ -32,8 +34,8 @@ class Source:
 
     def __post_init__(self) -> None:
         for name in ("rate", "radius"):
-            _positive(f"source {name}", getattr(self, name))
-        if not self.until > 0:
+            require_positive(f"source {name}", getattr(self, name))
+        if not (isinstance(self.until, Real) and self.until > 0):
             raise ValueError(f"source until = {self.until!r}: must be > 0")
 
 
@@ -59,8 +61,11 @@ class Problem:
     turning: float = 0.05
 
     def __post_init__(self) -> None:
-        _positive("radius", self.radius)
-        _positive("turning", self.turning)
+        require_positive("radius", self.radius)
+        require_kind("material", self.material, Material)
+        if not callable(self.initial):
+            raise ValueError(f"initial = {self.initial!r}: must be a function of r")
+        require_positive("turning", self.turning)
         if self.rim not in get_args(Rim):
             raise ValueError(f"rim = {self.rim!r}: must be one of {get_args(Rim)}")
         if self.material.kappa != 0:
@@ -72,7 +77,7 @@ class Problem:
             )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Solution:
     """Means of ``h`` and ``R`` over rings, shape (T, N), about the radii ``r``, at the times ``t``.
 
@@ -109,11 +114,7 @@ def ring_means(
     """Means of two functions of r over each of the rings, by five Gaussian points in each."""
     nodes, weights = np.polynomial.legendre.leggauss(5)
     r = radius / cells * (np.arange(cells)[:, None] + (nodes + 1) / 2)
-    h, R = (np.asarray(layer, dtype=float).reshape(r.shape) for layer in layers(r.ravel()))
+    pair = initial_layers(layers(r.ravel()), (r.size,))
+    h, R = (layer.reshape(r.shape) for layer in pair)
     weights = r * weights / (r * weights).sum(axis=1, keepdims=True)
     return np.asarray((h * weights).sum(axis=1)), np.asarray((R * weights).sum(axis=1))
-
-
-def _positive(name: str, value: float) -> None:
-    if not (math.isfinite(value) and value > 0):
-        raise ValueError(f"{name} = {value!r}: must be a finite number > 0")

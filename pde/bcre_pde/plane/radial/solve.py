@@ -7,9 +7,10 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from bcre_pde.gate import ascending, require_kind, require_tolerance, whole
 from bcre_pde.plane.radial.problem import Problem, Solution, ring_means
 from bcre_pde.problem import SMALLEST_GRID, Array
-from bcre_pde.solve import MOST_EVALUATIONS, TOLERANCE, ascending
+from bcre_pde.solve import MOST_EVALUATIONS, TOLERANCE
 
 
 def solve(
@@ -37,13 +38,10 @@ def solve(
         where the solver gave up; ValueError for arguments that are not allowed.
     """
     ordered = ascending(times)
-    if not 0 < tolerance < 1:
-        raise ValueError(f"tolerance = {tolerance!r}: must lie between 0 and 1")
-    if cells < SMALLEST_GRID:
-        raise ValueError(f"cells = {cells!r}: must be at least {SMALLEST_GRID}")
+    require_kind("problem", problem, Problem)
+    require_tolerance(tolerance)
+    cells = whole("cells", cells, SMALLEST_GRID)
     h, R = ring_means(problem.initial, problem.radius, cells)
-    if not (np.isfinite(h).all() and np.isfinite(R).all()):
-        raise ValueError("the initial h and R must be finite")
     from pde import PolarSymGrid
 
     from bcre_pde.advance import advance

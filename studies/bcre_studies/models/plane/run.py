@@ -4,12 +4,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.plane.scene import PlaneScene
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+LAYERS = {"h": "static layer", "R": "rolling layer"}
+VOLUMES = {
+    "inflow": "volume poured by the sources",
+    "outflow": "volume that has left through the foot",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +43,51 @@ class PlaneRun:
     steps: int
     wall_s: float
     facts: dict[str, Any] = field(default_factory=dict)
+
+    def to_xarray(self) -> xr.Dataset:
+        """h and R over (t, y, x), inflow and outflow over t, each with a long name and a unit.
+
+        ``wall`` (y, x) is 1 where no sand can be. The attributes hold the scene's title and
+        coefficients.
+
+        >>> from bcre_studies.models.plane import automaton
+        >>> from bcre_studies.scenes.plane.scene import load
+        >>> scene = load("obstacle", ["until=0.1"])
+        >>> data = automaton.run(scene, [0.0, 0.1]).to_xarray()
+        >>> data.R.dims, data.R.attrs["units"], data.attrs["v"] == scene.material.v
+        (('t', 'y', 'x'), 'm', True)
+        """
+        import xarray as xr
+
+        at, units = self.scene.domain.centres(), self.scene.units
+        t = {"long_name": "time", "units": units.time}
+        places = {"y": ("across", at.y), "x": ("downhill", at.x)}
+        data = xr.Dataset(
+            coords={"t": ("t", self.t, t)}
+            | {
+                axis: (axis, values.ravel(), {"long_name": name, "units": units.length})
+                for axis, (name, values) in places.items()
+            },
+            attrs={"title": self.scene.title, "model": self.model}
+            | {
+                name: value
+                for name, value in self.scene.material.model_dump().items()
+                if value is not None
+            },
+        )
+        for layer, name in LAYERS.items():
+            values = np.swapaxes(getattr(self, layer), 1, 2)
+            about = {"long_name": name, "units": units.length}
+            data[layer] = (("t", "y", "x"), values, about)
+        for name, what in VOLUMES.items():
+            about = {"long_name": what, "units": f"{units.length}^3"}
+            data[name] = ("t", getattr(self, name), about)
+        data["wall"] = (
+            ("y", "x"),
+            self.scene.walls().T.astype(np.int8),
+            {"long_name": "wall, 1 where no sand can be"},
+        )
+        return data
 
     def mass(self) -> Array:
         """Volume of sand at every time, walls left out."""

@@ -105,7 +105,7 @@ def _oscillation(rows: pd.DataFrame) -> Claim:
         for name in ("start", "gap", "size")
     ]
     finest = rows.loc["automaton, d = 0.25"]
-    told = "; ".join(
+    slopes = "; ".join(
         f"{name} {own[column]:.3g} (d = 0.25: {finest[column]:.3g}), in BCRE {fine[column]:.3g}, "
         f"with D_eff and kappa_eff {with_own[0][column]:.3g}"
         for name, column in (("S - Sc at the start", "start"), ("tilts between", "gap"))
@@ -114,8 +114,8 @@ def _oscillation(rows: pd.DataFrame) -> Claim:
         "oscillation between two slopes",
         "Under slow tilting the slope rises to a start and falls back to repose, as BCRE's does.",
         worst(comparison.verdict for comparison in comparisons),
-        f"{told}; size over L^2 {own['size']:.3g}, {finest['size']:.3g}, {fine['size']:.3g} and "
-        f"{with_own[0]['size']:.3g}. Both models oscillate; the differences at d = 1 are "
+        f"{slopes}; size over L^2 {own['size']:.3g}, {finest['size']:.3g}, {fine['size']:.3g} and "
+        f"{with_own[0]['size']:.3g}. The differences at d = 1 are "
         f"{', '.join(f'{comparison.difference:.0%}' for comparison in comparisons)}",
         f"{TOLERANCE:.0%} {WHY}",
     )

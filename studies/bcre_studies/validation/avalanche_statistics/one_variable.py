@@ -11,9 +11,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 
+from bcre_ca.kept import kept
 from bcre_studies.observables.outcome import slope
 from bcre_studies.validation.avalanche_statistics.drives import TILT, Events
 
@@ -53,7 +53,7 @@ def stuck(drive: Sticking) -> Events:
     return Events(*np.array(rows).T)
 
 
-@numba.njit(cache=True)
+@kept
 def _settle(h, start):  # type: ignore[no-untyped-def]
     """Let the pile come to rest in place; what left, and after how many steps."""
     last = h.size - 1

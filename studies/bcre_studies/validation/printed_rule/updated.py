@@ -13,10 +13,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import numba
 import numpy as np
 
 import bcre_ca
+from bcre_ca.kept import kept
 from bcre_studies.scenes.domain import Array
 
 
@@ -36,7 +36,7 @@ def march(h: Array, R: Array, rule: bcre_ca.Rule, steps: int, in_place: bool) ->
     return h, R, outflow
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kept
 def _march(h, R, courant, diffusion, exchange, repose, steps, in_place):  # type: ignore[no-untyped-def]
     last, outflow = h.size - 1, 0.0
     for _ in range(steps):

@@ -58,7 +58,7 @@ class Subject:
     name: str
     model: Model
     closure: str = ""
-    changes: Mapping[str, float] = field(default_factory=dict)
+    changes: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def is_rule(self) -> bool:
@@ -83,7 +83,9 @@ SUBJECTS = (
     Subject("automaton, D = 0", AUTOMATON, "D = 0", NO_D),
     Subject("automaton", AUTOMATON, "BCRE"),
     Subject("automaton of Aradian et al.", THICK_AUTOMATON, "Aradian"),
-    Subject("automaton of Hadeler-Kuttler", SLOPE_DRIVEN_AUTOMATON, "Hadeler-Kuttler"),
+    Subject(
+        "automaton of Hadeler-Kuttler", SLOPE_DRIVEN_AUTOMATON, "Hadeler-Kuttler", {"step": "auto"}
+    ),
 )
 """One-layer models, two-layer models and, in the same order, their automata."""
 

@@ -126,7 +126,10 @@ def test_bad_source_is_refused_with_its_name_and_value(options, message):
 
 @pytest.mark.parametrize(
     ("times", "cells", "message"),
-    [([1.0], 7, r"^cells = 7: must be at least 8"), ([2.0, 1.0], 8, r"must ascend")],
+    [
+        ([1.0], 7, r"^cells = 7: must be a whole number, at least 8"),
+        ([2.0, 1.0], 8, r"must ascend"),
+    ],
 )
 def test_bad_argument_is_refused(times, cells, message):
     with pytest.raises(ValueError, match=message):

@@ -1,0 +1,99 @@
+"""What every public entry asks of its arguments before a solver or compiled code sees them."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable
+from numbers import Real
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def require_not_negative(name: str, value: Any) -> None:
+    """Raise ValueError where the argument is no finite number >= 0."""
+    if not (is_finite(value) and value >= 0):
+        raise ValueError(f"{name} = {value!r}: must be a finite number >= 0")
+
+
+def require_positive(name: str, value: Any) -> None:
+    """Raise ValueError where the argument is no finite number > 0."""
+    if not (is_finite(value) and value > 0):
+        raise ValueError(f"{name} = {value!r}: must be a finite number > 0")
+
+
+def require_tolerance(tolerance: Any) -> None:
+    """Raise ValueError where the local error is no number between 0 and 1."""
+    if not (is_finite(tolerance) and 0 < tolerance < 1):
+        raise ValueError(f"tolerance = {tolerance!r}: must lie between 0 and 1")
+
+
+def require_kind(name: str, value: Any, kind: type) -> None:
+    """Raise ValueError for an argument of another type."""
+    if not isinstance(value, kind):
+        raise ValueError(f"{name} = {value!r}: must be of the kind {kind.__name__}")
+
+
+def is_finite(value: Any) -> bool:
+    """Whether it is a finite real number."""
+    return isinstance(value, Real) and math.isfinite(value)
+
+
+def whole(name: str, value: Any, least: int) -> int:
+    """The whole number; ValueError where it is none, or too small."""
+    is_number = is_finite(value) and not isinstance(value, (bool, np.bool_))
+    if not (is_number and float(value).is_integer() and value >= least):
+        raise ValueError(f"{name} = {value!r}: must be a whole number, at least {least}")
+    return int(value)
+
+
+def ascending(times: Iterable[Any]) -> list[float]:
+    """The times as numbers, refused unless they ascend from 0 or later."""
+    try:
+        ordered = [float(t) for t in times]
+    except (TypeError, ValueError):
+        raise ValueError(f"times = {times!r}: must be a sequence of numbers") from None
+    if not ordered or ordered[0] < 0 or not all(map(math.isfinite, ordered)):
+        raise ValueError(f"times = {ordered!r}: must be finite, >= 0 and not empty")
+    if any(a >= b for a, b in itertools.pairwise(ordered)):
+        raise ValueError(f"times = {ordered!r}: must ascend")
+    return ordered
+
+
+def layer(name: str, values: Any, shape: tuple[int, ...], least: float = -math.inf) -> Array:
+    """A new layer of this shape; none of its values is below ``least``.
+
+    Raises
+    ------
+    ValueError
+        naming the layer, where it is masked, ragged, of another shape, no real numbers or not
+        finite.
+    """
+    if np.ma.is_masked(values):
+        raise ValueError(f"{name} is masked in some cells: must have a number in every cell")
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        raise ValueError(f"{name} is ragged: must have the shape {shape}") from None
+    if array.dtype.kind not in "fiu":
+        raise ValueError(f"{name} has the type {array.dtype}: must hold real numbers")
+    if array.shape != shape:
+        raise ValueError(f"{name} has the shape {array.shape}: must be {shape}")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} must be finite")
+    if array.size and array.min() < least:
+        raise ValueError(f"{name} = {float(array.min())!r} somewhere: must be >= {least:g}")
+    return np.array(array, dtype=float)
+
+
+def initial_layers(pair: Any, shape: tuple[int, ...]) -> tuple[Array, Array]:
+    """h and R as a problem's ``initial`` returns them, R >= 0."""
+    try:
+        h, R = pair
+    except (TypeError, ValueError):
+        raise ValueError("initial: must return two layers, h and R") from None
+    return layer("initial h", h, shape), layer("initial R", R, shape, least=0.0)

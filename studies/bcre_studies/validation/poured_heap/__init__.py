@@ -1,0 +1,1 @@
+"""Heaps on a free surface: which flow rules keep them round?"""
