@@ -23,7 +23,13 @@ from bcre_studies.validation.which_model.properties import (
 
 HAS, PARTLY, LACKS = "#cfe8d5", "#fbeecb", "#f4d6d2"
 VANISHING, SMALL, LARGE = (f"least, pulse {pulse:g}" for pulse in PULSES)
-HEADS = ("returns to $S_c$", "smooths", "goes uphill", "second critical slope", "a pulse of 1; 10")
+HEADS = (
+    "returns to $S_c$",
+    "smooths",
+    "goes uphill",
+    "second critical slope",
+    "a pulse of 1; of 10",
+)
 
 Cell = tuple[str, str, str]
 """Colour, word and number."""
@@ -33,10 +39,14 @@ def _slope(value: float) -> str:
     return f"{value:g}" if math.isfinite(value) else "none"
 
 
+def _end(value: float) -> str:
+    return f"{value + 0.0:.2g}" if abs(value) >= 0.01 else "0"
+
+
 def _returns(row: Any) -> Cell:
     word = row["returns to Sc"]
     colour = {ALWAYS: HAS, AFTER: PARTLY}.get(word, LACKS)
-    return colour, word, f"from 3.2 to {row['after a pulse']:g}, alone {row['undisturbed']:g}"
+    return colour, word, f"3.2 to {_end(row['after a pulse'])}, alone {_end(row['undisturbed'])}"
 
 
 def _smooths(row: Any) -> Cell:
@@ -60,8 +70,9 @@ def _pulses(row: Any) -> Cell:
     if row["goes uphill"] == WHOLE:
         return HAS, "any slope", "needs no pulse"
     small, large = row[SMALL], row[LARGE]
-    colour = PARTLY if math.isfinite(small) or math.isfinite(large) else LACKS
-    return colour, "brings the top down", f"from {_slope(small)}; {_slope(large)}"
+    if not (math.isfinite(small) or math.isfinite(large)):
+        return LACKS, "never brings the top down", ""
+    return PARTLY, "brings the top down", f"$S_0 - S_c$ from {_slope(small)}; {_slope(large)} on"
 
 
 CELLS: tuple[Callable[[Any], Cell], ...] = (_returns, _smooths, _uphill, _second, _pulses)
