@@ -22,6 +22,7 @@ LAYERS = (
     "performance",
     "on_line",
     "reporting",
+    "playing",
     "on_plane",
     "preview",
     "advisor",

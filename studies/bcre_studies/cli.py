@@ -15,6 +15,7 @@ from bcre_studies.commands.check import check
 from bcre_studies.commands.listing import list_all
 from bcre_studies.commands.new import new
 from bcre_studies.commands.options import examples
+from bcre_studies.commands.play import play
 from bcre_studies.commands.report import report
 from bcre_studies.commands.run import run
 from bcre_studies.commands.show import show
@@ -24,7 +25,7 @@ from bcre_studies.commands.sweep import sweep
 from bcre_studies.system.one_line import one_line
 from bcre_studies.system.release import release
 
-COMMANDS = (run, new, show, advise, sweep, list_all, run_studies, report, check, speed)
+COMMANDS = (run, play, new, show, advise, sweep, list_all, run_studies, report, check, speed)
 
 BROKEN_PIPE = 141
 """The exit code of a program whose reader has gone, as a shell gives it."""

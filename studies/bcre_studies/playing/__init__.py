@@ -1,0 +1,1 @@
+"""A scene on a plane, live in a browser on this machine (``bcre play``)."""
