@@ -165,10 +165,10 @@ _scheme_of_step = by_scheme(
     lambda dt, scheme: scheme,
     {
         InContainer: lambda dt, scheme: InContainer(
-            scheme.supply * dt, scheme.walled, scheme.longest
+            scheme.supply * dt, scheme.ends, scheme.longest
         ),
         SlopeDriven: lambda dt, scheme: SlopeDriven(
-            scheme.supply * dt, scheme.walled, scheme.longest, scheme.d
+            scheme.supply * dt, scheme.ends, scheme.longest, scheme.d
         ),
     },
 )

@@ -2,7 +2,9 @@
 
     f(i) = (1/4) max(0, h(i) - h(i+1) - Sc d)        h(i) += f(i-1) - f(i)
 
-with a closed top and the last cell held, where sand leaves; or periodic in h + Sc x.
+with a closed top and the last cell held, where sand leaves; or periodic in h + Sc x. With angles of
+start and of stop a cell sheds nothing until it falls by more than a larger amount to the next, and
+from then on until it falls by Sc d.
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ SETTLED = 1e-9
 
 
 @kept
-def settled(h, fall, periodic):  # type: ignore[no-untyped-def]
+def settled(h, fall, periodic, start=0.0):  # type: ignore[no-untyped-def]
     """The height once no cell sheds more than :data:`SETTLED`, what left, and after how many steps.
 
     Parameters
@@ -25,17 +27,23 @@ def settled(h, fall, periodic):  # type: ignore[no-untyped-def]
     h: height at the cell centres, shape (N,).
     fall: Sc d, the largest fall from cell to cell that stands.
     periodic: joined ends; otherwise a closed top and a last cell that is held.
+    start: fall at which a cell begins to shed; no less than ``fall``.
     """
     h = h.copy()
     last = h.size - 1
-    flux = np.zeros(h.size)
+    flux, moves = np.zeros(h.size), np.zeros(h.size, np.bool_)
+    margin = max(start - fall, 0.0)
     left = 0.0
     steps = 0
     while True:
         for i in range(last):
-            flux[i] = SHARE * max(h[i] - h[i + 1] - fall, 0.0)
+            excess = max(h[i] - h[i + 1] - fall, 0.0)
+            moves[i] = excess > margin or (moves[i] and excess > 0)
+            flux[i] = SHARE * excess if moves[i] else 0.0
         if periodic:
-            flux[last] = SHARE * max(h[last] - h[0] + fall * last, 0.0)
+            excess = max(h[last] - h[0] + fall * last, 0.0)
+            moves[last] = excess > margin or (moves[last] and excess > 0)
+            flux[last] = SHARE * excess if moves[last] else 0.0
         if flux.max() <= SETTLED:
             return h, left, steps
         steps += 1

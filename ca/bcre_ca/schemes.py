@@ -30,16 +30,19 @@ class InPlace(NamedTuple):
     downhill: bool
 
 
+OPEN, WALLED, JOINED = 0, 1, 2
+
+
 class InContainer(NamedTuple):
-    """Upwind, between a closed top and a wall or an open foot, with sources.
+    """Upwind, with sources or a wall at the foot.
 
     supply: what sources pour into each cell, shape (N,): length/time, or a length in a step.
-    walled: whether a wall closes the foot.
+    ends: :data:`OPEN`, :data:`WALLED` or :data:`JOINED`.
     longest: a step that is long enough where no other bound is.
     """
 
     supply: Array
-    walled: bool
+    ends: int
     longest: float
 
 
@@ -50,7 +53,7 @@ class SlopeDriven(NamedTuple):
     """
 
     supply: Array
-    walled: bool
+    ends: int
     longest: float
     d: float
 

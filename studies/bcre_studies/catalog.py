@@ -64,6 +64,7 @@ STUDIES = {
     "one_variable": Entry(
         "validation.one_variable", "Control: which properties need the second layer?"
     ),
+    "which_model": Entry("validation.which_model.study", "Which model has which property?"),
     "order_of_accuracy": Entry(
         "verification.order_of_accuracy", "Observed order of accuracy on exact solutions"
     ),

@@ -147,11 +147,15 @@ PAPER_CLAIMS = (
             ("second_critical_angle", "closed form of Sd, BCRE"),
             ("second_critical_angle", "second critical slope, figure 1"),
             ("second_critical_angle", "runs to the top"),
+        ),
+        measured=(
             ("one_variable", "second critical angle"),
+            ("which_model", "second critical slope"),
         ),
         remarks={
-            CONDITIONAL: "it exists and needs the second layer, but lies at another slope than in "
-            "BCRE, which it meets only as d goes to 0; and finite pulses are catastrophic below it"
+            CONDITIONAL: "it exists, but lies at another slope than in BCRE, which it meets only "
+            "as d goes to 0; and finite pulses are catastrophic below it. One layer with angles of "
+            "start and stop has one too, and not every continuous model has"
         },
     ),
     PaperClaim(
@@ -226,6 +230,22 @@ PAPER_CLAIMS = (
             CONDITIONAL: "with cell size counted, which at their cell Peclet number of 25 makes D "
             "seven times what it is; Sd differs even then, but at 89.7 degrees and more, where no "
             "sand stands"
+        },
+    ),
+    PaperClaim(
+        "The automaton provides the same predictions as continuous models do",
+        as_stated=(
+            ("which_model", "automaton of each closure"),
+            ("which_model", "profiles of each closure"),
+        ),
+        measured=(
+            ("which_model", "return to repose"),
+            ("which_model", "smoothing"),
+            ("which_model", "second critical slope"),
+        ),
+        remarks={
+            REFUTED: "the continuous models differ in what they predict; given the closure of one, "
+            "the rule follows that one, but for the roughness that its cells smooth"
         },
     ),
     PaperClaim(

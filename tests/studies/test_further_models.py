@@ -101,10 +101,10 @@ def test_model_that_has_no_walls_or_sources_says_so(tmp_path):
     ("changes", "message"),
     [
         ({"scheme": "limited"}, r"automaton.scheme = 'limited': must be 'upwind' with source = 1"),
-        ({"ends": "periodic", "Sc": 0.0}, "domain.ends = 'periodic': must be 'open' or 'wall'"),
+        ({"scheme": "calibrated", "Gamma": 0.1, "ends": "open"}, "source = 1"),
     ],
 )
-def test_automaton_refuses_what_its_schemes_and_ends_do_not_take(tmp_path, changes, message):
+def test_automaton_refuses_what_its_schemes_do_not_take(tmp_path, changes, message):
     with pytest.raises(SceneError, match=message):
         AUTOMATON.run(scene(tmp_path, **changes), [0.0, 1.0])
 

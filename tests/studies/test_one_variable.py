@@ -93,6 +93,26 @@ def test_control_returns_to_repose_where_two_layers_do_not(excess, pulse):
     assert row["pde"] == pytest.approx(excess, rel=1e-2)
 
 
+@given(seed=st.integers(0, 10**6), periodic=st.booleans())
+def test_control_that_starts_where_it_stops_is_the_plain_one_to_the_bit(seed, periodic):
+    h = rough(seed) - 0.5 * X
+    plain, found = settled(h, 0.5 * D, periodic), settled(h, 0.5 * D, periodic, 0.5 * D)
+    assert np.array_equal(plain[0], found[0])
+    assert plain[1:] == found[1:]
+
+
+def test_control_with_angles_of_start_and_stop_stands_between_them_until_it_is_disturbed():
+    h = 1.0 * (X[-1] - X)
+    assert np.array_equal(settled(h, 0.5 * D, False, 1.2 * D)[0], h)
+    h[30] += 0.2 * D
+    assert np.array_equal(settled(h, 0.5 * D, False, 1.2 * D + 1e-9)[0], h)
+    h[30] += 0.2 * D
+    end = settled(h, 0.5 * D, False, 1.2 * D)[0]
+    assert slope(X, end) == pytest.approx(0.5, abs=1e-6)
+    steep = 1.3 * (X[-1] - X)
+    assert slope(X, settled(steep, 0.5 * D, False, 1.2 * D)[0]) == pytest.approx(0.5, abs=1e-6)
+
+
 def test_control_changes_the_surface_less_far_uphill_than_two_layers_do():
     row = study.reach()
     assert 0 < row["one_variable"] < 0.5 * row["automaton"]
@@ -106,16 +126,17 @@ def test_control_smooths_more_than_two_layers_and_bcre_not_at_all():
     assert row["pde"] == pytest.approx(1, abs=0.01)
 
 
-def verdicts(stands=None, rough=0.1, reach=1.0, control=0.0):
+def verdicts(stands=None, rough=0.1, reach=1.0, control=0.0, sticks=()):
     rows = [
-        ("final S - Sc", f"S0 - Sc = {excess:g}, pulse {pulse:g}", control, kept, kept)
+        ("final S - Sc", f"S0 - Sc = {excess:g}, pulse {pulse:g}", control, kept, kept, stuck)
         for excess in study.EXCESSES
         for pulse in study.PULSES
         for kept in [excess if stands is None and pulse == 0 else stands or 0.0]
+        for stuck in [excess if excess in sticks and pulse == 0 else 0.0]
     ]
-    rows += [("RMS of u, end over start", "rough_slope", rough, 0.4, 1.0)]
-    rows += [("reach uphill", "figure3", reach, 6.5, 6.25)]
-    columns = ["quantity", "case", "one_variable", "automaton", "pde"]
+    rows += [("RMS of u, end over start", "rough_slope", rough, 0.4, 1.0, 1.0)]
+    rows += [("reach uphill", "figure3", reach, 6.5, 6.25, 2.5)]
+    columns = ["quantity", "case", "one_variable", "automaton", "pde", study.STICKING]
     claims = study.judge({"comparison": pd.DataFrame(rows, columns=columns)})
     return [claim.verdict is Verdict.AGREE for claim in claims]
 
@@ -126,3 +147,10 @@ def test_every_claim_can_fail():
     assert verdicts(rough=0.99) == [True, False, True, True]
     assert verdicts(reach=6.4) == [True, True, False, True]
     assert verdicts(stands=0.1) == [True, True, True, False]
+    assert verdicts(sticks=(1.5,)) == [True, True, True, False]
+
+
+def test_one_layer_with_angles_of_start_and_stop_stands_above_repose_and_falls_when_disturbed():
+    assert study.final_slope(1.5, 0.0)[study.STICKING] == pytest.approx(1.5, rel=1e-3)
+    assert study.final_slope(1.5, 1.0)[study.STICKING] == pytest.approx(0, abs=1e-3)
+    assert study.final_slope(3.2, 0.0)[study.STICKING] == pytest.approx(0, abs=1e-3)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from bcre_ca.coefficients import Coefficients, Parameters, every_term
 from bcre_ca.exchange import carried, deposit_thin, eroded, leaving
 from bcre_ca.rule import Ends, Rule
-from bcre_ca.schemes import InContainer, SlopeDriven
+from bcre_ca.schemes import JOINED, OPEN, WALLED, InContainer, SlopeDriven
 
 Array = NDArray[np.float64]
 
@@ -34,23 +34,21 @@ def parameters_of(
     Raises
     ------
     ValueError
-        where a rule or joined ends do not go with sources, walls or beta.
+        where the rule's scheme or order does not go with sources and walls.
     """
     p = rule.parameters()
     if ends != "wall" and supply is None and rule.beta == 0:
         return p
-    if ends == "periodic":
-        raise ValueError(f"ends = {ends!r}: must be 'open' or 'wall' with sources or beta")
     if (rule.order, rule.scheme) != ("synchronous", "upwind"):
         raise ValueError(
             f"order = {rule.order!r}, scheme = {rule.scheme!r}: must be 'synchronous' and 'upwind' "
             "with a wall or sources"
         )
     poured = np.zeros(cells) if supply is None else np.array(supply, float)
-    walled = ends == "wall"
-    scheme: Any = InContainer(poured, walled, longest)
+    kind = {"open": OPEN, "wall": WALLED, "periodic": JOINED}[ends]
+    scheme: Any = InContainer(poured, kind, longest)
     if rule.beta > 0:
-        scheme = SlopeDriven(poured, walled, longest, float(rule.d))
+        scheme = SlopeDriven(poured, kind, longest, float(rule.d))
     every: Parameters = every_term(p)
     return every._replace(scheme=scheme)
 
@@ -64,13 +62,18 @@ def step(h: Array, R: Array, K: Coefficients) -> tuple[Array, Array, float]:
     K: coefficients with no term absent, of the scheme :class:`bcre_ca.schemes.InContainer`.
     """
     scheme: Any = K.scheme
-    below = (h - np.append(h[1:], 0.0)) - K.repose_drop
-    below[-1] = -K.repose_drop if scheme.walled else 0.0
-    above = np.append(below[0], below[:-1])
+    below = (h - np.append(h[1:], h[0] - K.repose_drop * h.size)) - K.repose_drop
     flux = np.zeros(h.size + 1)
-    flux[1:-1] = carried(R[:-1], R[1:], K)
-    flux[-1] = 0.0 if scheme.walled else leaving(R[-1], K)
+    flux[1:] = carried(R, np.append(R[1:], R[0]), K)
+    first = below[0]
+    if scheme.ends == JOINED:
+        flux[0], first = flux[-1], below[-1]
+    elif scheme.ends == WALLED:
+        flux[-1], below[-1] = 0.0, -K.repose_drop
+    else:
+        flux[-1], below[-1] = leaving(R[-1], K), 0.0
+    above = np.append(first, below[:-1])
     exchange = eroded(R, below, above - below, K)
     new = (R + ((flux[:-1] - flux[1:]) + exchange)) + scheme.supply
     h, R = deposit_thin(h - exchange, new, R, K.dry, K.emptying)
-    return h, R, float(flux[-1])
+    return h, R, float(flux[-1] - flux[0])

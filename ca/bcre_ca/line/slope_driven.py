@@ -11,7 +11,8 @@ is the steepest fall from a cell. Where the surface falls downhill everywhere, S
 S = v the step is the paper's.
 
 Ends are a closed top and an open foot, beyond which the surface goes on at repose and R is the
-same, or walls at both, against which the surface is level; w is what sources pour.
+same; walls at both, against which the surface is level; or joined as in :mod:`bcre_ca.line.step`. w
+is what sources pour.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from numpy.typing import NDArray
 
 from bcre_ca.coefficients import Coefficients
 from bcre_ca.line.second_order import larger, smaller
+from bcre_ca.schemes import JOINED, OPEN
 
 Array = NDArray[np.float64]
 
@@ -52,9 +54,17 @@ def step(h: Array, R: Array, K: Coefficients) -> tuple[Array, Array, float]:
     K: coefficients with no term absent, of the scheme :class:`bcre_ca.schemes.SlopeDriven`.
     """
     scheme: Any = K.scheme
-    fall = np.concatenate([[0.0], h[:-1] - h[1:], [0.0 if scheme.walled else K.repose_drop]])
+    fall = np.concatenate([[0.0], h[:-1] - h[1:], [0.0]])
+    beyond = R[-1]
+    if scheme.ends == OPEN:
+        fall[-1] = K.repose_drop
+    elif scheme.ends == JOINED:
+        beyond = R[0]
+        fall[0] = fall[-1] = h[-1] - (h[0] - K.repose_drop * h.size)
     flux = np.zeros(h.size + 1)
-    flux[1:] = carried(R, np.append(R[1:], R[-1]), fall[1:], scheme.d, K)
+    flux[1:] = carried(R, np.append(R[1:], beyond), fall[1:], scheme.d, K)
+    if scheme.ends == JOINED:
+        flux[0] = flux[-1]
     exchange = eroded(R, fall[:-1], fall[1:], K)
     new = (R + ((flux[:-1] - flux[1:]) + exchange)) + scheme.supply
-    return h - exchange, new, float(flux[-1])
+    return h - exchange, new, float(flux[-1] - flux[0])

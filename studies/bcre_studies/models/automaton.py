@@ -46,11 +46,6 @@ class Automaton(Adapter):
                 raise SceneError(
                     f"automaton.scheme = {scheme!r}: must be 'upwind' with {key} = {value!r}"
                 )
-        if scene.source and scene.domain.ends == "periodic":
-            raise SceneError(
-                f"domain.ends = {scene.domain.ends!r}: must be 'open' or 'wall' where the "
-                "automaton has sources"
-            )
 
     def on(self, scene: Scene, cells: int) -> Scene:
         if not self._scheme:

@@ -33,7 +33,6 @@ class HadelerKuttler(Bcre):
 class SlopeDrivenAutomaton(Automaton):
     """The automaton whose layer is driven by the slope; as its model it leaves ``D`` out."""
 
-    ends = ("open", "wall")
     admits = ("source",)
 
     def rule(self, scene: Scene) -> bcre_ca.Rule:

@@ -18,10 +18,18 @@ from bcre_studies.scenes.scene import Scene
 
 
 class HeightOnly(Adapter):
-    """The one-variable control; it needs no more than :meth:`run`."""
+    """The one-variable control; it needs no more than :meth:`run`.
+
+    Parameters
+    ----------
+    start: slope at which it begins to move; left out, Sc, at which it stops.
+    """
 
     ends = ("open", "periodic")
     admits = ()
+
+    def __init__(self, start: float = 0.0) -> None:
+        self._start = start
 
     def run(
         self,
@@ -36,7 +44,9 @@ class HeightOnly(Adapter):
         d = scene.domain.length / x.size
         start = np.sum(scene.initial(x), axis=0)
         began = time.perf_counter()
-        end, shed, steps = settled(start, scene.material.Sc * d, scene.domain.ends == "periodic")
+        end, shed, steps = settled(
+            start, scene.material.Sc * d, scene.domain.ends == "periodic", self._start * d
+        )
         t = np.array(times)
         return Run(
             scene=scene,

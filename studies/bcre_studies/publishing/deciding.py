@@ -87,6 +87,16 @@ def _one_variable(tables: Tables) -> str:
     )
 
 
+WHOLE = "the whole slope at once"
+
+
+def _models(tables: Tables) -> str:
+    rows = tables["comparison"].set_index("model")
+    two = rows[~rows.index.str.startswith("automaton") & (rows["goes uphill"] != WHOLE)]
+    has = int((two["second critical slope"] == "yes").sum())
+    return f"second critical slope in {has} of {len(two)} continuous models with two layers"
+
+
 def _profiles(figures: tuple[str, ...], tables: Tables) -> str:
     rows = tables["comparison"]
     rows = rows[rows["quantity"].str.startswith("R(x)") & (rows["d"] == 1.0)]
@@ -201,6 +211,7 @@ NUMBERS: dict[Key, Callable[[Tables], str]] = {
     ("second_critical_angle", "second critical slope, other materials"): _other_sd,
     ("one_variable", "return to repose"): _one_variable,
     ("one_variable", "second critical angle"): _one_variable,
+    ("which_model", "automaton of each closure"): _models,
     ("paper_figures", "figure1 profile"): partial(_profiles, ("figure1",)),
     ("paper_figures", "figure2 profile"): partial(_profiles, ("figure2", "figure3")),
     ("paper_figures", "no matter of cells"): _cells,

@@ -8,6 +8,10 @@ slope exceeds Sc, and nothing else (``height_only``):
 with a closed top and the last cell held, where sand leaves; or periodic in h + Sc x. It conserves
 h and has no rolling layer, so what it does as well needs no second layer, and what it does not
 is what the second layer is for. A pulse of rolling sand is given to it as height.
+
+Beside it stands the same rule with angles of start and of stop: a cell sheds nothing until the
+slope exceeds S_start, and from then on until it is Sc. S_start is the Sd of the two-layer
+automaton.
 """
 
 from __future__ import annotations
@@ -22,6 +26,8 @@ from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.comparison.wording import sentences, when
+from bcre_studies.models.automaton import rule_of
+from bcre_studies.models.height_only import HeightOnly
 from bcre_studies.models.registry import AUTOMATON, BCRE, HEIGHT_ONLY, Look
 from bcre_studies.models.run import Run
 from bcre_studies.observables.outcome import slope
@@ -41,6 +47,8 @@ CHANGED = 0.01
 SLOPE = "final S - Sc"
 MODELS = (HEIGHT_ONLY, AUTOMATON, BCRE)
 LOOKS: tuple[Look, ...] = ({}, {"markersize": 10, "markerfacecolor": "none"}, {})
+STICKING = "start_and_stop"
+"""Column of the control with angles of start and of stop."""
 TOLERANCE = 0.05
 WHY = "of the slope's excess at the start: a twentieth of what there is to lose"
 
@@ -110,11 +118,17 @@ def _row(
     for model in MODELS:
         run = model.run(scene, [0.0, scene.time.until], cells if model is BCRE else None)
         row[model.column] = significant(round(measure(run), 4) + 0.0, 3)
-    return row
+    run = sticking(scene).run(scene, [0.0, scene.time.until])
+    return row | {STICKING: significant(round(measure(run), 4) + 0.0, 3)}
+
+
+def sticking(scene: Scene) -> HeightOnly:
+    """The control that starts at the Sd of the scene's automaton and stops at Sc."""
+    return HeightOnly(start=rule_of(scene).second_critical_slope())
 
 
 def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
-    """Three properties need no second layer; a second critical angle does."""
+    """Which properties need a second layer, and which no more than an angle of start."""
     table = tables["comparison"].set_index(["quantity", "case"])
     slopes = {
         (excess, pulse): table.loc[(SLOPE, slope_case(excess, pulse))]
@@ -132,6 +146,12 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
         for excess in EXCESSES
         for model in (AUTOMATON, BCRE)
     )
+    metastable = [
+        excess
+        for excess in EXCESSES
+        if abs(slopes[excess, 0.0][STICKING] - excess) <= TOLERANCE * excess
+        and abs(slopes[excess, 1.0][STICKING]) <= TOLERANCE * excess
+    ]
     tolerance = f"{TOLERANCE:.0%} {WHY}"
     still = slopes[EXCESSES[-1], 0.0]
 
@@ -167,12 +187,21 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
         claim(
             "second critical angle",
             "A slope that stands above repose until it is disturbed needs the second layer.",
-            returns and stands,
+            returns and stands and not metastable,
             sentences(
                 f"undisturbed, S0 - Sc = {EXCESSES[-1]:g} ends at {still.one_variable:g} in the "
                 f"control, {still.automaton:g} in the two-layer automaton and {still.pde:g} in "
                 "BCRE",
-                when(returns, "Sc is the control's only critical slope"),
+                when(returns, "Sc is the plain control's only critical slope"),
+                *(
+                    f"with angles of start and stop one layer stands at S0 - Sc = {excess:g}, and "
+                    f"ends at {slopes[excess, 1.0][STICKING]:g} after a pulse of 1"
+                    for excess in metastable
+                ),
+                when(
+                    metastable and returns,
+                    "so it needs a second layer or a second angle; the layer finds its own",
+                ),
             ),
         ),
     ]
@@ -186,9 +215,10 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
         rows = table.loc[[slope_case(excess, pulse) for excess in EXCESSES]]
         for model, look in zip(MODELS, LOOKS, strict=True):
             axis.plot(EXCESSES, rows[model.column], label=model.label, **model.markers(**look))
+        axis.plot(EXCESSES, rows[STICKING], "x", color="0.4", label="height alone, start and stop")
         axis.set_xlabel("S0 - Sc")
         axis.set_ylabel("final S - Sc")
         axis.set_title("undisturbed" if pulse == 0 else f"after a pulse of {pulse:g}", loc="left")
     handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=3)
+    figure.legend(handles, labels, loc="outside lower center", ncols=4)
     return figure

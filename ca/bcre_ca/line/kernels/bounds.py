@@ -98,7 +98,7 @@ def _limits_within(h, R, p, period_drop, a, b, whole, scheme):  # type: ignore[n
 
 
 def _limits_in_container(h, R, p, period_drop, a, b, whole, scheme):  # type: ignore[no-untyped-def]
-    largest, sink = limits(h, R, p, None, True)
+    largest, sink = limits(h, R, p, period_drop, True)
     return largest, max(sink, container.sink_at_wall(h, p))
 
 

@@ -67,6 +67,9 @@ def _keeps_the_drift(rows: pd.DataFrame, reading: tuple[str, str, str]) -> bool:
     return bool((of_reading["drift"] / printed - 1).abs().max() < DRIFT)
 
 
+CONTINUOUS = ("de Gennes 1995 (D = 0)", "BCRE", "Aradian et al.", "Hadeler-Kuttler")
+
+
 def _one_variable(tables: Tables) -> list[str]:
     rows = tables["comparison"]
     undisturbed = rows[rows["case"].str.endswith("pulse 0")]
@@ -82,6 +85,25 @@ def _one_variable(tables: Tables) -> list[str]:
         f"figure 3’s pulse reaches {number(float(reach['one_variable']), 2)} uphill in it, "
         f"{number(float(reach['automaton']), 2)} in the automaton.",
     ]
+
+
+def _which_model(tables: Tables) -> list[str]:
+    rows = tables["comparison"].set_index("model")
+    two = [name for name in rows.index if name in CONTINUOUS]
+    returns = sum(rows.loc[two, "returns to Sc"] != "no")
+    second = sum(rows.loc[two, "second critical slope"] == "yes")
+    smooth = sum(rows.loc[two, "smooths"] == "yes")
+    sentences = [
+        "The same scenes are given to every model that the paper cites, and to the automaton of "
+        "each.",
+        f"Of {len(two)} continuous models with two layers {returns} return to repose once an "
+        f"avalanche has run to the top, {smooth} smooth a rough slope, and {second} have a second "
+        "critical slope.",
+    ]
+    rules = rows[rows.index.str.startswith("automaton")]
+    if (rules["smooths"] == "yes").all():
+        sentences.append("The automata all smooth, whatever their model does.")
+    return sentences
 
 
 def _choices(tables: Tables) -> list[str]:
@@ -122,6 +144,17 @@ STORIES: dict[str, Story] = {
         "Final slope of the one-variable pile, the two-layer automaton and BCRE, undisturbed and "
         "after a pulse.",
         _one_variable,
+    ),
+    "which_model": Story(
+        "Which model returns to repose, smooths, climbs, and has a second critical slope?",
+        (
+            "BCRE: ∂R/∂t + ∂/∂x (v R - D ∂R/∂x) = gamma R (S - Sc)",
+            "thick flows: v R + gamma R^2/2",
+            "Hadeler-Kuttler: v R S/Sc",
+        ),
+        "Models down, properties across; in each cell what the model does and the number that "
+        "decides.",
+        _which_model,
     ),
     "choices": Story(
         "Do the verdicts depend on what we chose ourselves?",
