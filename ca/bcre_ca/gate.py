@@ -58,9 +58,14 @@ def layers_of(h: Any, R: Any, rank: int, shape: str) -> tuple[Array, Array]:
 
 def require_start(h: Array, R: Array) -> None:
     """Raise ValueError, naming the cell, where layers are not finite or R is negative."""
+    require_finite(h, R)
+    require("R", R, R >= -DENORMAL, "must be >= 0")
+
+
+def require_finite(h: Array, R: Array) -> None:
+    """Raise ValueError, naming the cell, where layers are not finite."""
     require("h", h, np.isfinite(h), "must be finite")
     require("R", R, np.isfinite(R), "must be finite")
-    require("R", R, R >= -DENORMAL, "must be >= 0")
 
 
 def require(name: str, layer: Array, holds: NDArray[np.bool_], what: str) -> None:

@@ -76,7 +76,7 @@ def test_layers_of_unequal_length_are_refused_before_compiled_code_reads_past_th
         bcre_ca.frames(Pile(np.ones(100), np.ones(50)), RULE, [1.0])
 
 
-@pytest.mark.parametrize("entry", sorted(set(ON_A_LINE) - {"step", "bound"}))
+@pytest.mark.parametrize("entry", sorted(set(ON_A_LINE) - {"step", "bound", "advance"}))
 def test_a_negative_rolling_layer_is_refused_with_its_cell(entry):
     R = np.ones(N)
     R[7] = -1e-3
@@ -182,3 +182,9 @@ def test_piles_are_equal_where_all_that_they_hold_is():
     assert replace(PILE, t=1.0) != PILE
     assert replace(PILE, R=np.zeros(N)) != PILE
     assert (PILE == "a pile") is False
+
+
+def test_an_unstable_march_goes_on_from_the_negative_layer_that_it_made():
+    pile = bcre_ca.Pile(np.linspace(5.0, 0.0, 6), np.array([0.0, 0.1, -0.1, 0.0, 0.0, 0.0]))
+    rule = bcre_ca.Rule(v=0.1, D=0.1, gamma=0.01, Sc=0.5, d=1.0, dt=0.5)
+    assert bcre_ca.advance(pile, rule, 2).R.min() < 0

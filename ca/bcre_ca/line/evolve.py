@@ -131,7 +131,7 @@ def advance(pile: Pile, rule: Rule, steps: int, ends: Ends = "open") -> Pile:
     FloatingPointError
         where the layers are no longer finite, naming cell, time and the bound that was passed.
     """
-    pile = checked(pile)
+    pile = checked(pile, is_start=False)
     h, R = pile.h.copy(), pile.R.copy()
     outflow = march(h, R, rule, steps, ends) * rule.d
     if not (np.isfinite(h).all() and np.isfinite(R).all()):

@@ -9,7 +9,7 @@ from typing import Any, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from bcre_ca.gate import layers_of, numbers_of, require_kind, require_start
+from bcre_ca.gate import layers_of, numbers_of, require_finite, require_kind, require_start
 from bcre_ca.rule import Ends
 
 Array = NDArray[np.float64]
@@ -72,9 +72,15 @@ def line_of(h: Any, R: Any) -> tuple[Array, Array]:
     return layers_of(h, R, 1, "(N,) with N >= 1")
 
 
-def checked(pile: Pile) -> Pile:
-    """A pile with layers of its own, from which a run can start; ValueError where it is none."""
+def checked(pile: Pile, is_start: bool = True) -> Pile:
+    """A pile with layers of its own, from which a run can start; ValueError where it is none.
+
+    One that unstable steps have led to goes on with the R < 0 that they made.
+    """
     require_kind("pile", pile, Pile)
     h, R = line_of(pile.h, pile.R)
-    require_start(h, R)
+    if is_start:
+        require_start(h, R)
+    else:
+        require_finite(h, R)
     return replace(pile, h=h, R=R)
