@@ -7,8 +7,9 @@ from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.performance import scaling as study
 
 
-def tables(ratios=((2.0, 1.5), (0.9, 0.8)), upwind=(4000.0, 300.0), pde=(50.0, 20.0)):
+def tables(ratios=((2.0, 1.5), (0.9, 0.8)), upwind=(4000.0, 300.0), pde=(50.0, 20.0), **on_plane):
     """Ratios as (median, goal); cells at 60 frames a second, a figure each."""
+    threads, side, best = ({"threads": 1.9, "side": 800.0, "best": 2.0} | on_plane).values()
     comparison = pd.DataFrame(
         [
             {"ratio": f"ratio {i}", "goal": goal, "median": median}
@@ -22,7 +23,36 @@ def tables(ratios=((2.0, 1.5), (0.9, 0.8)), upwind=(4000.0, 300.0), pde=(50.0, 2
             for i, cells in enumerate(row)
         ]
     )
-    return {"comparison": comparison, "budget": budget}
+    plane = pd.DataFrame(
+        [
+            {
+                "ratio": "two threads : one",
+                "goal": 1.7,
+                "median": threads,
+                "two_threads_at_best": best,
+            }
+        ]
+    )
+    squares = pd.DataFrame(
+        [
+            {
+                "scene": "figure1",
+                "threads": 1,
+                "side": 400.0,
+                "goal": None,
+                "two_threads_at_best": best,
+            },
+            {
+                "scene": "figure1",
+                "threads": 2,
+                "side": side,
+                "goal": 768.0,
+                "two_threads_at_best": best,
+            },
+        ]
+    )
+    more = {"plane": plane, "plane_budget": squares}
+    return {"comparison": comparison, "budget": budget, **more}
 
 
 def verdicts(**changes):
@@ -30,7 +60,7 @@ def verdicts(**changes):
 
 
 def test_all_goals_reached_agree():
-    assert verdicts() == [Verdict.AGREE, Verdict.AGREE]
+    assert verdicts() == [Verdict.AGREE] * 4
     assert "2 of 2 ratios reach their goal" in study.judge(tables())[0].evidence
 
 
@@ -56,3 +86,25 @@ def test_a_figure_with_fewer_cells_than_the_papers_is_not_played():
     evidence = study.judge(tables())[1].evidence
     assert "figure1 4e+03 cells, figure2 3e+02 cells" in evidence
     assert "BCRE's solver with up to figure1 50, figure2 20 cells" in evidence
+
+
+@pytest.mark.parametrize("claim", [{"threads": 1.2}, {"side": 700.0}])
+def test_a_goal_missed_on_a_plane_decides_unless_others_held_a_processor(claim):
+    place = 2 if "threads" in claim else 3
+    assert verdicts(**claim)[place] is Verdict.DISAGREE
+    assert verdicts(**claim, best=1.1)[place] is Verdict.UNRESOLVED
+    assert verdicts(best=1.1)[place] is Verdict.AGREE
+    evidence = study.judge(tables(**claim, best=1.1))[place].evidence
+    assert "two threads that share nothing did 1.1 times" in evidence.lower()
+
+
+def test_loads_on_a_plane_count_the_cells_that_they_step():
+    from bcre_studies.performance.record import plane
+
+    run = plane.automaton(12, 1)
+    assert run.amount == 32 * 144
+    run.call()
+    assert plane.plain_numpy(12).amount == 144
+    h, R = plane.wet_plane(12)
+    assert h.shape == R.shape == (12, 12)
+    assert R.min() > 0

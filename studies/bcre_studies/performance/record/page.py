@@ -33,6 +33,15 @@ PARTS = {
         "Cells at 60 frames a second",
         "A scene is played from start to end in 600 frames.",
     ),
+    "plane": (
+        "Ratios on a plane, each within one run",
+        "Sand rolls on all cells. Median over the rounds, and the range over them; two "
+        "threads at best is what they gain where they share nothing.",
+    ),
+    "plane_budget": (
+        "Cells along each side of a plane at 60 frames a second",
+        "A plane as long and wide as the figure, with sand rolling on all of it, in 600 frames.",
+    ),
     "first_use": (
         "First use, apart from all else",
         "Seconds of a process of its own on figure 2: imports, first run with nothing compiled, "

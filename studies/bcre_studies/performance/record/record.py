@@ -33,7 +33,7 @@ DIGITS = 3
 
 def measure_record() -> Tables:
     """Everything, some minutes: for a machine that does nothing else."""
-    from bcre_studies.performance.record import first_use, ratios, sizes, specialisation
+    from bcre_studies.performance.record import first_use, plane, ratios, sizes, specialisation
     from bcre_studies.performance.record.advice_times import time_hits
     from bcre_studies.timing import costs
 
@@ -45,6 +45,8 @@ def measure_record() -> Tables:
         "ratios": ratios.measure(with_compiling=True),
         "sizes": sizes.measure(),
         "budget": sizes.budget(),
+        "plane": plane.ratios(),
+        "plane_budget": plane.budget(),
         "first_use": first_use.measure(),
         "costs": costs.measure(),
         "specialisation": specialisation.specialisation_gains(),
