@@ -120,9 +120,12 @@ def _follow(
 
 
 def _advanced(pile: bcre_ca.Pile, rule: bcre_ca.Rule, steps: int, order: str) -> bcre_ca.Pile:
-    if order not in UPDATED:
-        return bcre_ca.advance(pile, rule, steps)
-    h, R, left = march(pile.h, pile.R, rule, steps, in_place=order == UPDATED[1])
+    """Marched rather than advanced: a layer that an unstable step made negative is no start."""
+    if order in UPDATED:
+        h, R, left = march(pile.h, pile.R, rule, steps, in_place=order == UPDATED[1])
+    else:
+        h, R = pile.h.copy(), pile.R.copy()
+        left = bcre_ca.march(h, R, rule, steps)
     if not np.isfinite([h, R]).all():
         raise FloatingPointError("not finite")
     return bcre_ca.Pile(h, R, pile.t + steps * rule.dt, pile.outflow + rule.d * left)
