@@ -49,7 +49,7 @@ test: install ## run the tests; those of the page where Chromium is installed
 test-cluster: install ## run the sweeps' tests on a Dask scheduler with two workers on this machine
 	@$(BIN)/python -c 'import distributed' 2>/dev/null \
 		|| $(PIP) --require-hashes -r requirements-cluster.lock
-	$(BIN)/python -m pytest -n 0 -o python_files='cluster_*.py' -o 'pythonpath=tests/robustness tests/cluster' tests/cluster
+	$(BIN)/python -m pytest -o addopts='--import-mode=importlib -q --strict-markers' -o python_files='cluster_*.py' -o 'pythonpath=tests/robustness tests/cluster' tests/cluster
 
 costs: install ## measure what sweeps cost on workers and a scheduler (5 minutes), reports/quality/sweep_*.csv
 	@$(BIN)/python -c 'import distributed' 2>/dev/null \

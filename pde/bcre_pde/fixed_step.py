@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from bcre_pde.explicit import ExplicitMethod, tableau
-from bcre_pde.gate import layer, require_kind, require_positive, whole
+from bcre_pde.gate import numbers, require_kind, require_positive, whole
 from bcre_pde.material import Material
 from bcre_pde.problem import SMALLEST_GRID, Array, Ends
 
@@ -52,7 +52,7 @@ def take_fixed_steps(
     require_positive("dt", dt)
     steps = whole("steps", steps, 0)
     cells = whole("cells", np.size(u), SMALLEST_GRID)
-    u, R = layer("u", u, (cells,)), layer("R", R, (cells,))
+    u, R = numbers("u", u, (cells,)), numbers("R", R, (cells,))
     if ends not in ("open", "periodic"):
         raise ValueError(f"ends = {ends!r}: must be 'open' or 'periodic'")
     increments, weights, _ = tableau(method)

@@ -64,14 +64,13 @@ def ascending(times: Iterable[Any]) -> list[float]:
     return ordered
 
 
-def layer(name: str, values: Any, shape: tuple[int, ...], least: float = -math.inf) -> Array:
-    """A new layer of this shape; none of its values is below ``least``.
+def numbers(name: str, values: Any, shape: tuple[int, ...]) -> Array:
+    """A new layer of this shape, finite or not.
 
     Raises
     ------
     ValueError
-        naming the layer, where it is masked, ragged, of another shape, no real numbers or not
-        finite.
+        naming the layer, where it is masked, ragged, of another shape or no real numbers.
     """
     if np.ma.is_masked(values):
         raise ValueError(f"{name} is masked in some cells: must have a number in every cell")
@@ -83,11 +82,17 @@ def layer(name: str, values: Any, shape: tuple[int, ...], least: float = -math.i
         raise ValueError(f"{name} has the type {array.dtype}: must hold real numbers")
     if array.shape != shape:
         raise ValueError(f"{name} has the shape {array.shape}: must be {shape}")
+    return np.array(array, dtype=float)
+
+
+def layer(name: str, values: Any, shape: tuple[int, ...], least: float = -math.inf) -> Array:
+    """:func:`numbers` that are finite, and none of them below ``least``."""
+    array = numbers(name, values, shape)
     if not np.isfinite(array).all():
         raise ValueError(f"{name} must be finite")
     if array.size and array.min() < least:
         raise ValueError(f"{name} = {float(array.min())!r} somewhere: must be >= {least:g}")
-    return np.array(array, dtype=float)
+    return array
 
 
 def initial_layers(pair: Any, shape: tuple[int, ...]) -> tuple[Array, Array]:

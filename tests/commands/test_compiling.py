@@ -43,9 +43,9 @@ def test_compiling_counts_and_running_does_not():
 def test_first_run_of_the_automaton_does_not_report_compiling_as_running(monkeypatch):
     frames = bcre_ca.frames
 
-    def compiled_on_the_way(*arguments):
+    def compiled_on_the_way(*arguments, **options):
         compile_awhile()
-        yield from frames(*arguments)
+        yield from frames(*arguments, **options)
         compile_awhile()
 
     monkeypatch.setattr(bcre_ca, "frames", compiled_on_the_way)

@@ -38,7 +38,7 @@ def test_an_avalanche_outgrows_its_step_after_t_200_where_R_passes_100():
 def test_grids_too_small_for_bcre_are_refused_and_no_trouble_to_the_automaton(scene):
     row = study._try(Attempt(scene, "pde"))
     assert (row["verdict"], row["mass_error_at_most"]) == (REFUSED, "")
-    assert "must be at least 8" in row["message"]
+    assert "must be a whole number, at least 8" in row["message"]
     for scheme in study.SCHEMES:
         assert study._try(Attempt(scene, "ca", scheme))["verdict"] == SURVIVES
 

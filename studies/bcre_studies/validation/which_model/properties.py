@@ -45,6 +45,8 @@ ALWAYS, AFTER, NEVER = "always", "after a run to the top", "no"
 YES, NO = "yes", "no"
 FRONT, WET, WHOLE = "a front, above Sd", "only where it is wet", "the whole slope at once"
 
+RULES = (AUTOMATON, THICK_AUTOMATON, SLOPE_DRIVEN_AUTOMATON, HEIGHT_ONLY, QUASI_STATIC)
+
 
 @dataclass(frozen=True)
 class Subject:
@@ -63,7 +65,7 @@ class Subject:
     @property
     def is_rule(self) -> bool:
         """Whether it runs on the cells of the scene itself."""
-        return self.model.name.startswith("ca") or self.model in (HEIGHT_ONLY, QUASI_STATIC)
+        return self.model in RULES
 
     def run(self, scene: Scene, times: list[float], cells: int = CELLS, **options: Any) -> Run:
         """The scene in this model; ``cells`` for one that solves an equation."""
