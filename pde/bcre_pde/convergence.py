@@ -128,13 +128,17 @@ class Layers(Protocol):
 
 
 def jump_stands(coarse: Layers, fine: Layers) -> bool:
-    """Whether in some frame u or R falls or rises over one cell, whatever the cells: a jump."""
-    scale = SEEN * (np.ptp(fine.u, axis=1) + np.abs(fine.R).max(axis=1))
+    """Whether in some frame u or R falls or rises over one cell, whatever the cells: a jump.
+
+    Only the frames of both are compared: either may have been stopped before the other.
+    """
+    both = slice(min(len(coarse.u), len(fine.u)))
+    scale = SEEN * (np.ptp(fine.u[both], axis=1) + np.abs(fine.R[both]).max(axis=1))
     return any(
         bool(((ours > JUMP * theirs) & (ours > scale)).any())
         for theirs, ours in (
-            (_steepest(coarse.u), _steepest(fine.u)),
-            (_steepest(coarse.R), _steepest(fine.R)),
+            (_steepest(coarse.u[both]), _steepest(fine.u[both])),
+            (_steepest(coarse.R[both]), _steepest(fine.R[both])),
         )
     )
 

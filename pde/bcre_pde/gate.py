@@ -13,6 +13,10 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+UNDERSHOOT = 0.01
+"""Part of the thickest layer by which R may lie below 0 at the start, as differences of high order
+leave it ahead of a scarp that a cell cannot resolve."""
+
 
 def require_not_negative(name: str, value: Any) -> None:
     """Raise ValueError where the argument is no finite number >= 0."""
@@ -85,20 +89,24 @@ def numbers(name: str, values: Any, shape: tuple[int, ...]) -> Array:
     return np.array(array, dtype=float)
 
 
-def layer(name: str, values: Any, shape: tuple[int, ...], least: float = -math.inf) -> Array:
-    """:func:`numbers` that are finite, and none of them below ``least``."""
+def layer(name: str, values: Any, shape: tuple[int, ...]) -> Array:
+    """:func:`numbers` that are finite."""
     array = numbers(name, values, shape)
     if not np.isfinite(array).all():
         raise ValueError(f"{name} must be finite")
-    if array.size and array.min() < least:
-        raise ValueError(f"{name} = {float(array.min())!r} somewhere: must be >= {least:g}")
     return array
 
 
 def initial_layers(pair: Any, shape: tuple[int, ...]) -> tuple[Array, Array]:
-    """h and R as a problem's ``initial`` returns them, R >= 0."""
+    """h and R as a problem's ``initial`` returns them.
+
+    R must be >= 0, but for :data:`UNDERSHOOT`: a solve may go on from where another one ended.
+    """
     try:
         h, R = pair
     except (TypeError, ValueError):
         raise ValueError("initial: must return two layers, h and R") from None
-    return layer("initial h", h, shape), layer("initial R", R, shape, least=0.0)
+    static, rolling = layer("initial h", h, shape), layer("initial R", R, shape)
+    if rolling.size and rolling.min() < -UNDERSHOOT * rolling.max(initial=0.0):
+        raise ValueError(f"initial R = {float(rolling.min())!r} somewhere: must be >= 0")
+    return static, rolling

@@ -1,5 +1,6 @@
 import itertools
 import math
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -7,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bcre_pde import error_of_finest, grid_convergence_index
-from bcre_pde.convergence import changes
+from bcre_pde.convergence import changes, jump_stands
 
 
 def test_grid_convergence_index_of_the_textbook_example():
@@ -103,3 +104,19 @@ def test_too_few_grids_have_an_infinite_error():
 def test_grids_that_never_change_have_no_error():
     assert error_of_finest([0.0, 0.0, 0.0]) == (math.inf, 0.0)
     assert np.isfinite(error_of_finest([0.0, 0.0, 1e-3]).error)
+
+
+class Frames(NamedTuple):
+    u: np.ndarray
+    R: np.ndarray
+
+
+def test_solutions_that_stopped_at_different_frames_are_compared_where_both_have_one():
+    step = np.where(np.arange(40) < 20, 1.0, 0.0)
+    smooth = np.linspace(1.0, 0.0, 40)
+    still = np.zeros((2, 40))
+    stands = Frames(np.array([smooth, step]), still)
+    assert jump_stands(Frames(stands.u[:, ::2], still[:, ::2]), stands)
+    cut = Frames(stands.u[:1], still[:1])
+    assert not jump_stands(Frames(stands.u[:, ::2], still[:, ::2]), cut)
+    assert not jump_stands(Frames(cut.u[:, ::2], cut.R[:, ::2]), stands)
