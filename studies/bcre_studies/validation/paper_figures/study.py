@@ -102,10 +102,12 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
 
 def _profile_claim(rows: pd.DataFrame, name: str) -> Claim:
     own = rows[rows["d"] == 1]
+    resolved = own[own["verdict"] != Verdict.UNRESOLVED]
     return Claim(
         name=f"{name} profile",
-        statement=f"The automaton's rolling layer in {name} is that of BCRE.",
-        verdict=worst(own["verdict"]),
+        statement=f"The automaton's rolling layer in {name} is that of BCRE, at the times at which "
+        "BCRE is resolved.",
+        verdict=worst(resolved["verdict"]) if len(resolved) else Verdict.UNRESOLVED,
         evidence="relative L1 difference from BCRE as it stands, and with D_eff and kappa_eff: "
         + "; ".join(
             f"t = {row['t']:g}, d = {row['d']:g}: {row['difference']:.3g} and "
