@@ -158,8 +158,8 @@ TURNS = [
         "figure1 climb, effective",
         AGREE,
         of(case="figure1", quantity="time from 10 % to 90 % of the climb"),
-        {"difference_effective": 0.04, "difference_effective_error": 0.001},
-        said=("0.04",),
+        {"difference_effective": 0.03, "difference_effective_error": 0.001},
+        said=("relative difference 0.03",),
     ),
     Turn(
         "repose_return",

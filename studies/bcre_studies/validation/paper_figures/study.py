@@ -126,9 +126,12 @@ def _doubt(row: pd.Series[Any]) -> str:
 
 
 def _with_own(row: pd.Series[Any], name: str, statement: str) -> Claim:
-    """Judged by BCRE with D_eff and kappa_eff alone, where BCRE as it stands is not resolved."""
+    """Judged by BCRE with D_eff and kappa_eff alone, where BCRE as it stands is not resolved.
+
+    A gap that exceeds the tolerance by more than the error is a disagreement.
+    """
     gap, error = row["difference_effective"], row["difference_effective_error"]
-    resolved = error <= SHARE * max(gap, TOLERANCE)
+    resolved = error <= SHARE * max(gap, TOLERANCE) or gap - error > TOLERANCE
     good = Verdict.AGREE if gap <= TOLERANCE else Verdict.DISAGREE
     return Claim(
         name=name,
