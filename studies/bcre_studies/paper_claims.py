@@ -129,9 +129,8 @@ PAPER_CLAIMS = (
         under_condition=(
             ("uphill_propagation", "surface wave"),
             ("uphill_propagation", "rolling front"),
-            ("uphill_propagation", "scarp"),
         ),
-        measured=(("opening_angle", "90 degrees at Sd"),),
+        measured=(("uphill_propagation", "scarp"), ("opening_angle", "90 degrees at Sd")),
         remarks={
             CONDITIONAL: "the surface wave climbs at gamma R on any slope, the rolling layer above "
             "Sd only; in figure 3, far below Sd, what lies above the start is where the pulse "

@@ -231,7 +231,7 @@ def test_bar_in_a_claim_stays_in_its_cell():
     }
     page = render("README.md.j2", **content(ledger=[row]))
     (line,) = (line for line in page.splitlines() if r"\|Sc\|" in line)
-    assert line.replace(r"\|", "").count("|") == 5
+    assert line.replace(r"\|", "").count("|") == 4
 
 
 def test_symbols_in_texts_get_their_indices():

@@ -83,7 +83,7 @@ def test_a_scene_plays_is_poured_on_and_ends_with_ctrl_c(played, browser):
     assert all(url.startswith((address, "data:", "ws://127.0.0.1")) for url in asked_for)
 
     program.send_signal(signal.SIGINT)
-    assert program.wait(20) == 0
+    assert program.wait(200) == 0
     assert program.stderr.read() == b""
     page.wait_for_function("document.getElementById('said').textContent.includes('ended')")
     page.close()
