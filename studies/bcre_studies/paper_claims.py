@@ -131,11 +131,7 @@ PAPER_CLAIMS = (
             ("uphill_propagation", "rolling front"),
         ),
         measured=(("uphill_propagation", "scarp"), ("opening_angle", "90 degrees at Sd")),
-        remarks={
-            CONDITIONAL: "the surface wave climbs at gamma R on any slope, the rolling layer above "
-            "Sd only; in figure 3, far below Sd, what lies above the start is where the pulse "
-            "already lay"
-        },
+        remarks={CONDITIONAL: "a wave always, a front above Sd"},
     ),
     PaperClaim(
         "The second variable brings a second critical angle, as in the continuous model, above "
