@@ -89,6 +89,18 @@ class Recording:
             return self._pile(self._state, int(self._counts[STEPS]), time)
         return self._within_block(time)
 
+    def until_still(self, still: float, between: float) -> Pile:
+        """The pile once R is nowhere more than ``still``, looked at after every ``between``.
+
+        Raises
+        ------
+        FloatingPointError
+            as :meth:`at`.
+        """
+        while self._state.R.max() > still:
+            self._step_on(float(self._clock[T]) + between)
+        return self._pile(self._state, int(self._counts[STEPS]), float(self._clock[T]))
+
     @property
     def _near(self) -> float:
         """By which a time may miss the end of a step and still be that."""

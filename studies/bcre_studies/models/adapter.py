@@ -11,6 +11,7 @@ import numpy as np
 
 from bcre_pde import Measured
 from bcre_studies.models.run import Run
+from bcre_studies.scenes.domain import Array
 from bcre_studies.scenes.scene import Scene, SceneError
 
 Stop = Callable[[Run], bool]
@@ -66,6 +67,14 @@ class Adapter(ABC):
         cells: the model's own grid; left out, the one that the scene asks for.
         stop: called with the run so far after every recorded time; True ends the run there.
         """
+
+    @staticmethod
+    def laid(scene: Scene, cells: int | None) -> tuple[Array, Array]:
+        """Cell centres, and the surface with all that rolls at the start laid on it."""
+        if cells is not None:
+            scene.require_held(cells)
+        x = scene.centres(cells)
+        return x, np.sum(scene.initial(x), axis=0)
 
     def on(self, scene: Scene, cells: int) -> Scene:
         """The scene with this number of cells as what it asks for."""

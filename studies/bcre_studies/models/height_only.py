@@ -38,11 +38,8 @@ class HeightOnly(Adapter):
         cells: int | None = None,
         stop: Stop | None = None,
     ) -> Run:
-        if cells is not None:
-            scene.require_held(cells)
-        x = scene.centres(cells)
+        x, start = self.laid(scene, cells)
         d = scene.domain.length / x.size
-        start = np.sum(scene.initial(x), axis=0)
         began = time.perf_counter()
         end, shed, steps = settled(
             start, scene.material.Sc * d, scene.domain.ends == "periodic", self._start * d

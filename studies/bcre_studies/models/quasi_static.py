@@ -30,10 +30,8 @@ class QuasiStatic(Adapter):
         cells: int | None = None,
         stop: Stop | None = None,
     ) -> Run:
-        if cells is not None:
-            scene.require_held(cells)
-        x, Sc, length = scene.centres(cells), scene.material.Sc, scene.domain.length
-        start = np.sum(scene.initial(x), axis=0)
+        x, start = self.laid(scene, cells)
+        Sc, length = scene.material.Sc, scene.domain.length
         u_foot = float(scene.initial(np.array([length]))[0][0]) + Sc * length
         began = time.perf_counter()
         every = [0.0, *(t for t in times if t > 0)]

@@ -6,16 +6,9 @@ from pathlib import Path
 
 from bcre_studies.models.registry import BOTH
 from bcre_studies.running.done import Done
-from bcre_studies.running.place import (
-    PROFILES,
-    SUMMARY,
-    Origin,
-    require_apart,
-    require_own,
-    scenes_of,
-)
+from bcre_studies.running.place import PROFILES, SUMMARY, Origin, admitted
 from bcre_studies.scenes.scene import load
-from bcre_studies.system.files import replace_bytes, require_writable
+from bcre_studies.system.files import replace_bytes
 
 FIGURE, ANIMATION = "figure.svg", "animation.gif"
 FILES = PROFILES, SUMMARY, FIGURE, ANIMATION
@@ -44,11 +37,8 @@ def run(
         naming the key, its value and what is allowed; then nothing is written.
     """
     choice = choice or BOTH
-    require_writable("--out", folder, FILES)
-    scene = load(origin.scene, origin.changes)  # what is refused here need not wait for the solvers
-    require_apart("--out", [folder / name for name in FILES], origin.inputs(scene))
-    if is_own_folder:
-        require_own(folder / SUMMARY, scenes_of(folder / SUMMARY), origin)
+    # What is refused here need not wait for the solvers.
+    scene = admitted(origin, load, folder, FILES, is_own_folder)
     from bcre_studies.on_line import picture, said
     from bcre_studies.on_line.quantities import quantities
     from bcre_studies.running.run import notes, run_scene, write_run

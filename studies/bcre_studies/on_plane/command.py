@@ -12,17 +12,11 @@ import numpy as np
 
 from bcre_studies.models.registry import AUTOMATON, BCRE
 from bcre_studies.running.done import Done
-from bcre_studies.running.place import (
-    SUMMARY,
-    Origin,
-    require_apart,
-    require_own,
-    scenes_of,
-)
+from bcre_studies.running.place import SUMMARY, Origin, admitted
 from bcre_studies.scenes.refusal import SceneError
 from bcre_studies.scenes.toml_file import is_on_plane, read
 from bcre_studies.system import memory
-from bcre_studies.system.files import replace_bytes, replace_file, replace_text, require_writable
+from bcre_studies.system.files import replace_bytes, replace_file, replace_text
 
 if TYPE_CHECKING:
     from bcre_studies.models.plane.run import PlaneRun
@@ -69,11 +63,7 @@ def run(
     names = {None: (AUTOMATON.name,), "both": MODELS}.get(choice, (choice,))
     if not set(names) <= set(MODELS):
         raise ValueError(f"--model = {choice!r}: must be 'ca', 'pde' or 'both' on a plane")
-    require_writable("--out", folder, FILES)
-    scene = load(origin.scene, origin.changes)
-    require_apart("--out", [folder / name for name in FILES], origin.inputs(scene))
-    if is_own_folder:
-        require_own(folder / SUMMARY, scenes_of(folder / SUMMARY), origin)
+    scene = admitted(origin, load, folder, FILES, is_own_folder)
     with failures_name_their_key(scene):
         _require_memory(scene, frames, len(names))
         times = [float(t) for t in np.linspace(0.0, scene.time.until, frames)]

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from bcre_studies.scenes.listing import path_of
 from bcre_studies.scenes.plane.scene import PlaneScene
 from bcre_studies.scenes.refusal import SceneError
 from bcre_studies.scenes.scene import Scene
+from bcre_studies.system.files import require_writable
 from bcre_studies.system.release import release
+
+AnyScene = TypeVar("AnyScene", Scene, PlaneScene)
 
 PROFILES, SUMMARY = "profiles.csv", "summary.json"
 """What a run writes of its numbers."""
@@ -62,6 +65,34 @@ class Origin:
             "version": release(),
             "seed": seeds[0] if len(seeds) == 1 else seeds or None,
         }
+
+
+def admitted(
+    origin: Origin,
+    load: Callable[[str, tuple[str, ...]], AnyScene],
+    folder: Path,
+    files: Sequence[str],
+    is_own_folder: bool,
+) -> AnyScene:
+    """The scene, once it is sure that its results may be written into ``folder``.
+
+    Parameters
+    ----------
+    load: of a scene's source and its changes.
+    files: names of what may be written.
+    is_own_folder: nobody asked for the folder, so that it must not hold another scene's results.
+
+    Raises
+    ------
+    ValueError
+        naming the key, its value and what is allowed.
+    """
+    require_writable("--out", folder, files)
+    scene = load(origin.scene, origin.changes)
+    require_apart("--out", [folder / name for name in files], origin.inputs(scene))
+    if is_own_folder:
+        require_own(folder / SUMMARY, scenes_of(folder / SUMMARY), origin)
+    return scene
 
 
 def require_apart(key: str, outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
