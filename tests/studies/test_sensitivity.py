@@ -83,3 +83,17 @@ def test_first_order_parts_add_up_to_one_at_most_and_totals_to_one_at_least(tabl
     assert (sums["first_order"] < 1.05).all()
     assert (sums["total_order"] > 0.95).all()
     assert set(table["observable"]) == set(sensitivity.OBSERVABLES)
+
+
+def test_the_same_study_twice_gives_the_same_intervals_and_leaves_numpys_generator_alone(
+    monkeypatch,
+):
+    def observables(points):
+        return np.array([points[0], points[1] * points[7], points[4], points[5]])
+
+    monkeypatch.setattr(sensitivity, "_observables", observables)
+    monkeypatch.setattr(sensitivity, "SAMPLE", 16)
+    before = np.random.get_state()[1].tolist()  # noqa: NPY002
+    first, second = (sensitivity.run()["comparison"] for _ in range(2))
+    pd.testing.assert_frame_equal(first, second)
+    assert np.random.get_state()[1].tolist() == before  # noqa: NPY002
