@@ -194,7 +194,8 @@ def budget() -> pd.DataFrame:
             side, steps = _largest_side(name, threads)
             row = {"scene": name, "threads": threads, "side": side, "steps_a_frame": steps}
             rows.append(row | {"goal": goal if threads == 2 else None})
-    return pd.DataFrame(rows).assign(two_threads_at_best=at_best)
+    table = pd.DataFrame(rows).astype({"goal": "Int64"})
+    return table.assign(two_threads_at_best=at_best)
 
 
 def _largest_side(name: str, threads: int) -> tuple[float, int]:
