@@ -66,7 +66,7 @@ STUDIES = {
     ),
     "which_model": Entry("validation.which_model.study", "Which model has which property?"),
     "order_of_accuracy": Entry(
-        "verification.order_of_accuracy", "Observed order of accuracy on exact solutions"
+        "verification.order_of_accuracy.study", "Observed order of accuracy on exact solutions"
     ),
     "error_estimate": Entry(
         "verification.error_estimate", "How often BCRE's own error estimate covers the true error"
