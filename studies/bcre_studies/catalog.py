@@ -69,7 +69,7 @@ STUDIES = {
         "validation.quasi_static_limit.study", "When does a scene need no rolling layer?"
     ),
     "order_of_accuracy": Entry(
-        "verification.order_of_accuracy", "Observed order of accuracy on exact solutions"
+        "verification.order_of_accuracy.study", "Observed order of accuracy on exact solutions"
     ),
     "error_estimate": Entry(
         "verification.error_estimate", "How often BCRE's own error estimate covers the true error"

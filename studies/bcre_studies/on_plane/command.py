@@ -13,6 +13,7 @@ import numpy as np
 from bcre_studies.models.registry import AUTOMATON, BCRE
 from bcre_studies.running.done import Done
 from bcre_studies.running.place import SUMMARY, Origin, admitted
+from bcre_studies.scenes.doubts import doubts
 from bcre_studies.scenes.refusal import SceneError
 from bcre_studies.scenes.toml_file import is_on_plane, read
 from bcre_studies.system import memory
@@ -102,7 +103,7 @@ def write(runs: Sequence[PlaneRun], folder: Path, origin: Origin, animate: bool)
         lines.append(f"{name}: {', '.join(facts)}")
     files = tuple(folder / name for name in written)
     picture_of = folder / (ANIMATION if animate else PICTURE)
-    return Done(files, picture_of, {"models": summary}, lines)
+    return Done(files, picture_of, {"models": summary}, lines, list(doubts(runs[0].scene)))
 
 
 def _short(value: object) -> str:
