@@ -83,6 +83,6 @@ def test_survey_that_runs_uphill_is_refused(bcre):
     assert "must fall, because x runs downhill" in bcre("new", "a", "--survey", "up.csv").refusal
     Path("up.csv").write_text("x;h\n0,0;4,5\n", encoding="utf-8")
     told = bcre("new", "a", "--survey", "up.csv").refusal
-    assert "has the head 'x;h'; must have commas between its columns" in told
+    assert "line 1, 'x;h': must have commas between its columns" in told
     assert "no such file" in bcre("new", "a", "--survey", "none.csv").refusal
     assert not Path("a.toml").exists()

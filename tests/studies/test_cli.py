@@ -450,8 +450,14 @@ def test_step_that_the_avalanche_outgrows_is_refused_though_stable_at_the_start(
             ["surface.0.file = 'start.csv'"],
         ),
         (lambda: Path("start.csv").write_text("", encoding="utf-8"), ["start.csv", "CSV"]),
-        (lambda: write_scene(x=np.arange(40)[::-1]), ["start.csv", "x = 38.0", "must ascend"]),
-        (lambda: write_scene(h=np.full(40, np.nan)), ["start.csv", "must be numbers"]),
+        (
+            lambda: write_scene(x=np.arange(40)[::-1]),
+            ["start.csv", "line 3: x = 38", "must ascend"],
+        ),
+        (
+            lambda: write_scene(h=np.full(40, np.nan)),
+            ["start.csv", "line 2: h = ''", "must be a number"],
+        ),
         (lambda: write_scene(h=np.full(40, np.inf)), ["start.csv", "finite"]),
         (lambda: write_scene(R=np.full(40, -0.5)), ["rolling.0.file", "-0.5", ">= 0"]),
         (lambda: write_scene(x=np.linspace(3, 9, 40)), ["start.csv", "must span"]),

@@ -9,7 +9,9 @@ import pytest
 import bcre_ca
 from bcre_pde import exact
 from bcre_studies.comparison.verdict import Verdict
-from bcre_studies.verification import order_of_accuracy as study
+from bcre_studies.verification.order_of_accuracy import layers, observed, study
+from bcre_studies.verification.order_of_accuracy.claims import order_of
+from bcre_studies.verification.order_of_accuracy.expected import EXPECTED
 
 SOLUTIONS = {
     "climbing": exact.climbing_hump(
@@ -25,19 +27,19 @@ SCHEMES = [*UPWIND, ("pde", "runge-kutta"), ("pde", "DOP853")]
 @pytest.fixture
 def fit(monkeypatch):
     """The study's own fit of order and error, for any solution; without the slowest grids."""
-    finer = {"ca": study.GRIDS["ca"], "pde": study.GRIDS["pde"][:-1]}
+    finer = {"ca": observed.GRIDS["ca"], "pde": observed.GRIDS["pde"][:-1]}
     coarser = {model: grids[:4] for model, grids in finer.items()}
-    limited = study.LIMITED_GRIDS
+    limited = observed.LIMITED_GRIDS
 
     def fit(solution, model, scheme):
-        monkeypatch.setattr(study, "solutions", lambda: {"this": solution})
+        monkeypatch.setattr(observed, "solutions", lambda: {"this": solution})
         diffuses = solution.material.D > 0
-        monkeypatch.setattr(study, "GRIDS", coarser if diffuses else finer)
-        monkeypatch.setattr(study, "LIMITED_GRIDS", limited[:4] if diffuses else limited)
-        rows = pd.DataFrame(study._errors_of(("this", model, scheme)))
-        named = study._named(*scheme) if model == "ca" else scheme
+        monkeypatch.setattr(observed, "GRIDS", coarser if diffuses else finer)
+        monkeypatch.setattr(observed, "LIMITED_GRIDS", limited[:4] if diffuses else limited)
+        rows = pd.DataFrame(observed.errors_of(("this", model, scheme)))
+        named = observed.named(*scheme) if model == "ca" else scheme
         key = {"solution": "this", "model": model, "scheme": named}
-        return study._fit(key, rows)
+        return observed.fit(key, rows)
 
     return fit
 
@@ -119,8 +121,8 @@ def test_thick_step_is_twice_the_limited_one_and_keeps_the_layer_positive():
     x = (np.arange(50) + 0.5) * SATURATED.length / 50
     pile = bcre_ca.Pile(*SATURATED.layers(x, 0.0))
     rule = bcre_ca.Rule(0.8, 0.0, 1e14, 0.3, SATURATED.length / 50, 1.0, v_up=1.1)
-    bound = study.thick_step(pile, rule)
-    assert study.thick_step(pile, replace(rule, scheme="limited")) <= bound
+    bound = layers.thick_step(pile, rule)
+    assert layers.thick_step(pile, replace(rule, scheme="limited")) <= bound
     end = bcre_ca.advance(pile, replace(rule, dt=bound), 200, "periodic")
     assert end.R.min() > 0
     assert bound > 1e10 * bcre_ca.largest_stable_step(pile, rule, "periodic")
@@ -128,7 +130,7 @@ def test_thick_step_is_twice_the_limited_one_and_keeps_the_layer_positive():
 
 def test_limited_order_with_curvature_is_two_where_v_dt_over_d_is_small_on_every_grid():
     """That of the study, on Sc = 0 so that the many small steps leave less rounding."""
-    studied = study.solutions()["surface mode, kappa = 0.1"].material
+    studied = layers.solutions()["surface mode, kappa = 0.1"].material
     solution = exact.surface_mode(0.5, studied.gamma, studied.kappa, studied.v, Sc=0.0)
     m, cells = solution.material, (100, 200, 400)
 
@@ -136,17 +138,17 @@ def test_limited_order_with_curvature_is_two_where_v_dt_over_d_is_small_on_every
         d = solution.length / n
         x = (np.arange(n) + 0.5) * d
         if share is not None:
-            return study.errors(solution, *study.automaton_layer(solution, n, share, "limited"))
+            return layers.errors(solution, *layers.automaton_layer(solution, n, share, "limited"))
         steps = int(np.ceil(solution.until / (0.01 * d**2 / m.kappa)))
         dt = solution.until / steps
         rule = bcre_ca.Rule(m.v, 0, m.gamma, m.Sc, d, dt, scheme="limited", kappa=m.kappa)
         assert m.v * dt / d < 0.02
         _, R = bcre_ca.evolve(*solution.layers(x, 0.0), rule, steps, "periodic")
-        return study.errors(solution, x, R)
+        return layers.errors(solution, x, R)
 
     def order(share):
         found = np.array([error(n, share)["L1"] for n in cells])
-        return study.observed_order(np.array(cells, float), found, 0.0)
+        return observed.observed_order(np.array(cells, float), found, 0.0)
 
     assert order(None) > 1.8
     assert order(0.5) < 1.7
@@ -155,7 +157,7 @@ def test_limited_order_with_curvature_is_two_where_v_dt_over_d_is_small_on_every
 def test_pde_with_a_wrong_coefficient_does_not_converge(fit):
     row = fit(with_wrong(SOLUTIONS["rolling"], "v", 1.01), "pde", "runge-kutta")
     assert abs(row["order_L1"]) < 0.5
-    assert row["L1_on_finest"] > study.LARGEST_ERROR["pde"]
+    assert row["L1_on_finest"] > EXPECTED["pde"].error
 
 
 def test_errors_are_those_in_the_window_at_the_end():
@@ -164,35 +166,35 @@ def test_errors_are_those_in_the_window_at_the_end():
     expected = solution.layers(x, solution.until)[1]
     inside = (x >= solution.window[0]) & (x <= solution.window[1])
     off = np.where(inside, 3e-101, 1.0)
-    found = study.errors(solution, x, expected + off)
+    found = layers.errors(solution, x, expected + off)
     assert found == pytest.approx({"L1": 3e-101, "L2": 3e-101, "max": 3e-101}, rel=1e-9, abs=0)
 
 
 @pytest.mark.parametrize("order", [0.7, 1.0, 5.0])
 def test_observed_order_of_a_power_law_is_its_exponent(order):
     cells = np.array([25.0, 50, 100, 200, 400])
-    assert study.observed_order(cells, 3 * cells**-order, 0.0) == pytest.approx(order, rel=1e-12)
+    assert observed.observed_order(cells, 3 * cells**-order, 0.0) == pytest.approx(order, rel=1e-12)
 
 
 def test_observed_order_is_fitted_to_the_three_finest_grids_above_the_floor():
     cells = np.array([10.0, 30, 50, 120, 200])
     error = np.array([1e-2, *cells[1:4] ** -4.0, 1e-12])
-    assert study.observed_order(cells, error, 1e-11) == pytest.approx(4, rel=1e-12)
-    assert study.observed_order(cells, error, 0.0) > 8
-    assert np.isnan(study.observed_order(cells, error, 1e-3))
+    assert observed.observed_order(cells, error, 1e-11) == pytest.approx(4, rel=1e-12)
+    assert observed.observed_order(cells, error, 0.0) > 8
+    assert np.isnan(observed.observed_order(cells, error, 1e-3))
 
 
 def test_order_that_is_no_number_is_not_agreement():
     rows = pd.DataFrame({"cells": [10, 20, 40], "L1": 1e-9, "L2": 1e-9, "max": 1e-9, "floor": 1e-8})
-    row = study._fit({"solution": "a", "model": "pde", "scheme": "b"}, rows)
+    row = observed.fit({"solution": "a", "model": "pde", "scheme": "b"}, rows)
     assert np.isnan(row["order_L1"])
     assert row["verdict"] == Verdict.DISAGREE
 
 
 @pytest.mark.parametrize("model", ["ca", "pde"])
 def test_past_the_breaking_time_the_order_is_about_one_or_below(monkeypatch, model):
-    monkeypatch.setattr(study, "BROKEN_GRIDS", (50, 100, 200, 400))
-    rows = study._past_breaking(model)
+    monkeypatch.setattr(observed, "BROKEN_GRIDS", (50, 100, 200, 400))
+    rows = observed.past_breaking(model)
     assert [row["t_over_t_star"] for row in rows] == [1.1, 1.5, 2.0]
     for row in rows:
         assert row["order"] <= 1.4
@@ -202,10 +204,10 @@ def test_past_the_breaking_time_the_order_is_about_one_or_below(monkeypatch, mod
 def test_before_the_breaking_time_the_same_differences_fall_at_the_formal_order():
     solution = SOLUTIONS["climbing"]
     x, grids = np.linspace(0.5, 13.5, 300), (50, 100, 200, 400)
-    profiles = [study.pde_layer(solution, cells, "runge-kutta") for cells in grids]
+    profiles = [layers.pde_layer(solution, cells, "runge-kutta") for cells in grids]
     exact_R = solution.layers(x, solution.until)[1]
-    errors = [study.errors(solution, *profile)["L1"] for profile in profiles]
-    assert study.observed_order(np.array(grids, float), np.array(errors), 0.0) >= 4
+    errors = [layers.errors(solution, *profile)["L1"] for profile in profiles]
+    assert observed.observed_order(np.array(grids, float), np.array(errors), 0.0) >= 4
     assert np.ptp(exact_R) > 0.15
 
 
@@ -214,7 +216,7 @@ def test_verdicts_of_the_claims_turn_with_one_bad_row():
 
     def claims(order, error, broken):
         rows = [
-            study._fit(
+            observed.fit(
                 {"solution": "a", "model": model, "scheme": "b"},
                 pd.DataFrame(
                     {
@@ -257,17 +259,20 @@ def test_claim_of_a_scheme_turns_with_one_bad_row_and_names_it():
         rows = pd.DataFrame({"cells": [100, 200, 400], "floor": 0.0})
         for norm in ("L1", "L2", "max"):
             rows[norm] = error * np.array([4.0**order, 2.0**order, 1.0])
-        named = study._named(scheme, 0.5)
-        return study._fit({"solution": "a", "model": "ca", "scheme": named}, rows)
+        named = observed.named(scheme, 0.5)
+        return observed.fit({"solution": "a", "model": "ca", "scheme": named}, rows)
 
     def verdicts(calibrated, limited):
         table = pd.DataFrame([row("calibrated", *calibrated), row("limited", *limited)])
-        return [study._claim_of_scheme(table, s).verdict for s in ("calibrated", "limited")]
+        return [
+            order_of(s, table[table["scheme"].str.startswith(s)]).verdict
+            for s in ("calibrated", "limited")
+        ]
 
     agree, disagree = Verdict.AGREE, Verdict.DISAGREE
     assert verdicts((1.0, 1e-4), (2.0, 1e-4)) == [agree, agree]
     assert verdicts((2.5, 1e-4), (2.0, 1e-4)) == [agree, agree]
     assert verdicts((0.8, 1e-4), (1.7, 1e-4)) == [disagree, disagree]
     assert verdicts((1.0, 0.02), (2.3, 1e-4)) == [disagree, disagree]
-    off = study._claim_of_scheme(pd.DataFrame([row("limited", 1.7, 1e-4)]), "limited")
+    off = order_of("limited", pd.DataFrame([row("limited", 1.7, 1e-4)]))
     assert "a: 1.7" in off.evidence

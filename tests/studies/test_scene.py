@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from bcre_studies.models.bcre import problem_of
 from bcre_studies.models.registry import AUTOMATON
+from bcre_studies.scenes.doubts import doubts
 from bcre_studies.scenes.listing import built_in_names
 from bcre_studies.scenes.scene import Scene, SceneError, load
 
@@ -175,7 +176,16 @@ GOOD = np.arange(0.0, 20.5, 1.0)
         (table(GOOD[:15], GOOD[:15], GOOD[:15]), ["surface.0.file", "14", "must span"]),
         (table(GOOD[3:], GOOD[3:], GOOD[3:]), ["surface.0.file", "3", "must span"]),
         (table(GOOD, GOOD, -GOOD), ["rolling.0.file", "R = ", "must be >= 0"]),
-        (table(GOOD, GOOD, GOOD).replace("7.0,7.0,7.0", "7.0,high,7.0"), ["h must be numbers"]),
+        (
+            table(GOOD, GOOD, GOOD).replace("7.0,7.0,7.0", "7.0,high,7.0"),
+            ["h = 'high': must be a number"],
+        ),
+        ("# a survey\n" + table(GOOD, GOOD, GOOD), ["line 1", "'# a survey'", "is a comment"]),
+        (table(GOOD, GOOD, GOOD).replace("\n3.0", "\n#3.0"), ["line 5", "is a comment"]),
+        ("sep=;\n" + table(GOOD, GOOD, GOOD), ["line 1", "'sep=;'", "spreadsheets"]),
+        (table(GOOD, GOOD, GOOD).replace(",", ";"), ["line 1", "must have commas"]),
+        (table(GOOD, GOOD, GOOD).replace("7.0,7.0,7.0", '7.0,"7,0",7.0'), ["line 9", "point"]),
+        (table(GOOD, GOOD, GOOD).replace("7.0,7.0,7.0", "7,0,7,0,7,0"), ["line 9", "6 fields"]),
         (table(GOOD, GOOD, GOOD).replace("7.0,7.0,7.0", "7.0,nan,7.0"), ["finite"]),
         (table(GOOD, GOOD, GOOD).replace("7.0,7.0,7.0", "7.0,,7.0"), ["surface.0.file", "h"]),
     ],
@@ -184,6 +194,32 @@ def test_bad_table_is_refused_in_one_line_with_its_key_and_file(write, text, wor
     message = refusal(write(TABLE_SCENE, text))
     for word in words:
         assert word in message
+
+
+def test_scene_with_a_byte_order_mark_is_the_same_scene(write, tmp_path):
+    path = write(TABLE_SCENE, table(GOOD, GOOD, GOOD))
+    marked = tmp_path / "marked.toml"
+    marked.write_text(path.read_text(encoding="utf-8"), encoding="utf-8-sig")
+    assert load(marked).model_dump() == load(path).model_dump()
+
+
+def test_scene_reached_by_a_link_finds_its_tables(write, tmp_path):
+    path = write(TABLE_SCENE, table(GOOD, GOOD, GOOD))
+    link = tmp_path / "elsewhere" / "link.toml"
+    link.parent.mkdir()
+    link.symlink_to(path)
+    assert load(link).tables() == load(path).tables()
+    (link.parent / "table.csv").write_text(table(GOOD, 2 * GOOD, GOOD), encoding="utf-8")
+    assert load(link).initial(GOOD)[0] == pytest.approx(2 * load(path).initial(GOOD)[0])
+
+
+def test_marks_of_missing_values_and_an_angle_for_a_slope_are_asked_about(write):
+    measured = np.where(GOOD == 7, -9999.0, -GOOD)
+    scene = load(write(TABLE_SCENE, table(GOOD, measured, GOOD)), ["Sc=35"])
+    steep, missing = doubts(scene)
+    assert "material.Sc = 35.0 is a slope of 88.4 degrees" in steep
+    assert "surface.0.file = 'table.csv' holds -9999" in missing
+    assert not list(doubts(load(write(TABLE_SCENE, table(GOOD, -GOOD, GOOD)))))
 
 
 def test_table_that_is_not_text_is_refused(write, tmp_path):

@@ -13,6 +13,7 @@ import numpy as np
 from bcre_studies.models.registry import AUTOMATON, BCRE
 from bcre_studies.running.done import Done
 from bcre_studies.running.place import SUMMARY, Origin, admitted
+from bcre_studies.scenes.doubts import doubts
 from bcre_studies.scenes.refusal import SceneError
 from bcre_studies.scenes.toml_file import is_on_plane, read
 from bcre_studies.system import memory
@@ -84,7 +85,7 @@ def _runs(scene: PlaneScene, names: Sequence[str | None], times: list[float]) ->
 
 def write(runs: Sequence[PlaneRun], folder: Path, origin: Origin, animate: bool) -> Done:
     """Write the files of these runs of one scene."""
-    from bcre_studies.on_plane import netcdf, picture
+    from bcre_studies.on_plane import netcdf, picture, said
 
     summary = {run.model: run.summary() | origin.record(run.scene, folder) for run in runs}
     replace_bytes(folder / FRAMES, netcdf.content(runs))
@@ -96,17 +97,15 @@ def write(runs: Sequence[PlaneRun], folder: Path, origin: Origin, animate: bool)
 
         replace_bytes(folder / ANIMATION, animation.content(runs))
         written.append(ANIMATION)
-    lines = []
-    for name, numbers in summary.items():
-        facts = (f"{key} {_short(value)}" for key, value in numbers.items())
-        lines.append(f"{name}: {', '.join(facts)}")
     files = tuple(folder / name for name in written)
     picture_of = folder / (ANIMATION if animate else PICTURE)
-    return Done(files, picture_of, {"models": summary}, lines)
-
-
-def _short(value: object) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
+    return Done(
+        files=files,
+        picture=picture_of,
+        record={"models": summary, "quantities": said.record(runs)},
+        said=tuple(said.said(runs)),
+        notes=list(doubts(runs[0].scene)),
+    )
 
 
 def _require_memory(scene: PlaneScene, frames: int, models: int) -> None:

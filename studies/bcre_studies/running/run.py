@@ -19,6 +19,7 @@ import numpy as np
 from bcre_studies.models.registry import Model, chosen
 from bcre_studies.models.run import Run, frame_times
 from bcre_studies.running.place import PROFILES, SUMMARY, Origin
+from bcre_studies.scenes.doubts import doubts
 from bcre_studies.scenes.scene import Scene, SceneError
 from bcre_studies.system import memory
 from bcre_studies.system.compiling import compiling
@@ -69,8 +70,9 @@ def require_runnable(scene: Scene, choice: str, frames: int) -> None:
 
 
 def notes(scene: Scene, choice: str) -> list[str]:
-    """What a user should know of the models on this scene."""
-    return [note for model in chosen(choice) if (note := model.adapter().note(scene))]
+    """What a user should know of this scene, and of the models on it."""
+    of_models = (model.adapter().note(scene) for model in chosen(choice))
+    return [*doubts(scene), *filter(None, of_models)]
 
 
 @contextmanager

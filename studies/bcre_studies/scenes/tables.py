@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -49,7 +49,7 @@ def read_columns(key: str, path: Path, column: str) -> tuple[Array, Array]:
     Raises
     ------
     ProfileError
-        naming ``key``, the file and what is allowed.
+        naming ``key``, the file, its line and what is allowed.
     """
 
     def refuse(why: str) -> ProfileError:
@@ -59,40 +59,67 @@ def read_columns(key: str, path: Path, column: str) -> tuple[Array, Array]:
     for name in ("x", column):
         if head.count(name) != 1:
             raise refuse(f"has columns {', '.join(head)[:80]}; must have x,{column}, each once")
-    places = [head.index(name) for name in ("x", column)]
-    try:
-        x, values = (np.array([float(row[place]) for row in rows]) for place in places)
-    except ValueError as error:
-        raise refuse(f"x and {column} must be numbers: {error}") from None
+    x, values = (
+        np.array([_number(name, row.fields[head.index(name)], row.line, refuse) for row in rows])
+        for name in ("x", column)
+    )
     if x.size < 4:
         raise refuse(f"has {x.size} rows; must have at least 4")
-    if not (np.abs(x) < LARGEST).all() or not (np.abs(values) < LARGEST).all():
-        raise refuse(f"x and {column} must be finite numbers below {LARGEST:g} in every row")
     if not (np.diff(x) > 0).all():
-        row = int(np.argmax(~(np.diff(x) > 0))) + 1
-        raise refuse(f"x = {float(x[row])!r} in row {row + 1}: x must ascend")
+        row = rows[int(np.argmax(~(np.diff(x) > 0))) + 1]
+        raise refuse(f"line {row.line}: x = {row.fields[head.index('x')].strip()}: x must ascend")
     return x, values
 
 
-def _rows(path: Path, refuse: Callable[[str], ProfileError]) -> tuple[list[str], list[list[str]]]:
+class _Row(NamedTuple):
+    line: int
+    fields: list[str]
+
+
+def _rows(path: Path, refuse: Callable[[str], ProfileError]) -> tuple[list[str], list[_Row]]:
     """Head and rows of a CSV file in which every row has as many fields as the head."""
     try:
         if not path.is_file():
             raise refuse("no such file; must be a CSV file, its path relative to the scene file")
         require(str(refuse("its rows")), READ * path.stat().st_size)
         with path.open(encoding="utf-8-sig", newline="") as file:
-            lines = [row for row in csv.reader(file, strict=True) if row]
+            reader = csv.reader(file, strict=True)
+            rows = [_Row(reader.line_num, fields) for fields in reader if fields]
     except (UnicodeDecodeError, OSError, csv.Error) as error:
         raise refuse(f"must be a CSV file in UTF-8: {' '.join(str(error).split())[:100]}") from None
-    if not lines:
+    if not rows:
         raise refuse("is empty; must be a CSV file with a head")
-    head = [name.strip() for name in lines[0]]
-    if len(head) == 1 and any(sign in head[0] for sign in ";\t"):
-        raise refuse(f"has the head {head[0][:80]!r}; must have commas between its columns")
-    for number, row in enumerate(lines[1:], start=1):
-        if len(row) != len(head):
-            raise refuse(f"row {number} has {len(row)} fields; must have {len(head)} as the head")
-    return head, lines[1:]
+    for row in rows:
+        if why := _not_a_row(row, head := rows[0]):
+            raise refuse(f"line {row.line}, {','.join(row.fields)[:60]!r}: {why}")
+    return [name.strip() for name in head.fields], rows[1:]
+
+
+def _not_a_row(row: _Row, head: _Row) -> str:
+    """What of a spreadsheet's or a logger's habits makes this line no row; mostly nothing."""
+    first = row.fields[0].strip()
+    if first.startswith("#"):
+        return "is a comment; must be a row of names or numbers"
+    if row is head and first.lower().startswith("sep="):
+        return "is a mark of spreadsheets; must be left out"
+    if row is head and any(sign in name for name in row.fields for sign in ";\t"):
+        return "must have commas between its columns"
+    if len(row.fields) != len(head.fields):
+        comma = "; a decimal comma must be a point" if len(row.fields) > len(head.fields) else ""
+        return f"has {len(row.fields)} fields; must have {len(head.fields)} as the head{comma}"
+    return ""
+
+
+def _number(name: str, text: str, line: int, refuse: Callable[[str], ProfileError]) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        point = " with a decimal point" if "," in text else ""
+        raise refuse(f"line {line}: {name} = {text[:40]!r}: must be a number{point}") from None
+    if not abs(value) < LARGEST:
+        allowed = f"must be a finite number below {LARGEST:g}"
+        raise refuse(f"line {line}: {name} = {text.strip()[:40]}: {allowed}")
+    return value
 
 
 def profile(what: str, x: Array, values: Array, domain: Domain) -> PPoly:

@@ -95,12 +95,18 @@ class TableSurface(Term):
     kind: Literal["table"]
     file: str
     _profile: Any = PrivateAttr(default=None)
+    _measured: Any = PrivateAttr(default=None)
     _tilt: float = PrivateAttr(default=0.0)
 
     def load(self, key: str, folder: Path, domain: Domain, tilt: float) -> None:
         x, h = read_table(key, folder / self.file, "h", domain)
-        self._tilt = tilt
+        self._measured, self._tilt = h, tilt
         self._profile = profile(f"{key}.file = {self.file!r}: h + Sc x", x, h + tilt * x, domain)
+
+    def measured(self) -> Array:
+        """The rows of the file as they are."""
+        assert self._measured is not None
+        return np.asarray(self._measured)
 
     def height(self, x: Array, domain: Domain) -> Array:
         assert self._profile is not None
@@ -148,6 +154,7 @@ class TableRolling(Term):
     kind: Literal["table"]
     file: str
     _profile: Any = PrivateAttr(default=None)
+    _measured: Any = PrivateAttr(default=None)
 
     def load(self, key: str, folder: Path, domain: Domain) -> None:
         x, R = read_table(key, folder / self.file, "R", domain)
@@ -157,7 +164,13 @@ class TableRolling(Term):
                 f"{key}.file = {self.file!r}: R = {float(R[row])!r} at x = {float(x[row])!r}: "
                 "must be >= 0"
             )
+        self._measured = R
         self._profile = profile(f"{key}.file = {self.file!r}: R", x, R, domain)
+
+    def measured(self) -> Array:
+        """The rows of the file as they are."""
+        assert self._measured is not None
+        return np.asarray(self._measured)
 
     def layer(self, x: Array, domain: Domain) -> Array:
         assert self._profile is not None

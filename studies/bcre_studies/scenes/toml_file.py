@@ -48,7 +48,20 @@ def read(source: str | Path, overrides: Sequence[str], sections: Sections) -> tu
         if not separator:
             raise SceneError(f"--set {assignment!r}: must be key=value")
         assign(data, key.strip(), _toml_value(value.strip()), sections)
-    return data, path.parent
+    return data, _folder(path, data)
+
+
+def _folder(path: Path, data: dict[str, Any]) -> Path:
+    """Where the scene's tables lie: beside it, or beside the file that a link leads to."""
+    lacks = any(not (path.parent / name).is_file() for name in _files(data))
+    return path.resolve().parent if lacks and path.is_symlink() else path.parent
+
+
+def _files(data: Mapping[str, Any]) -> list[str]:
+    """The files that the scene's terms name."""
+    layers = [data.get("surface"), data.get("rolling")]
+    terms = [term for layer in layers if isinstance(layer, list) for term in layer]
+    return [str(term["file"]) for term in terms if isinstance(term, dict) and "file" in term]
 
 
 def assign(data: dict[str, Any], key: str, value: Any, sections: Sections) -> None:
@@ -97,7 +110,7 @@ def _text(path: Path) -> str:
             raise SceneError(f"{path}: no such scene; must be a TOML file or one of {names}")
         if path.stat().st_size > LONGEST:
             raise SceneError(f"{path}: must be a TOML file of at most {LONGEST} bytes")
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError:
         raise SceneError(f"{path}: must be UTF-8 text") from None
     except OSError as error:
@@ -109,11 +122,6 @@ def _text(path: Path) -> str:
 
 def is_on_plane(data: Mapping[str, Any]) -> bool:
     """Whether these are the values of a scene on a plane: it has a width, or a grid as surface."""
-    domain, terms = data.get("domain"), data.get("surface")
-    files = [
-        str(term.get("file", ""))
-        for term in (terms if isinstance(terms, list) else [])
-        if isinstance(term, dict)
-    ]
+    domain = data.get("domain")
     is_wide = isinstance(domain, dict) and "width" in domain
-    return is_wide or any(file.lower().endswith((".asc", ".npy")) for file in files)
+    return is_wide or any(file.lower().endswith((".asc", ".npy")) for file in _files(data))

@@ -76,9 +76,13 @@ class Table(StrictTable):
         """Read the file; :class:`bcre_studies.scenes.tables.ProfileError` where it cannot serve."""
         self._values = GridFile(key, folder, self.file).heights(domain)
 
-    def height(self, at: Places) -> Array:
+    def measured(self) -> Array:
+        """The heights of the file as they are."""
         assert self._values is not None
         return np.asarray(self._values)
+
+    def height(self, at: Places) -> Array:
+        return self.measured()
 
 
 class Gaussian(StrictTable):

@@ -1,0 +1,1 @@
+"""How each scheme converges to exact solutions: observed order and error."""
