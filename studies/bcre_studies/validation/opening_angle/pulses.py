@@ -47,7 +47,8 @@ Falls = Callable[[float], bool]
 def end_of(material: Material, excess: float, pulse: float, columns: int) -> tuple[bool, float]:
     """Whether the top came down, and S - Sc along the axis when that was decided."""
     m = material
-    x, y = np.arange(ROWS) + 0.5, np.arange(columns) + 0.5 * (columns > LINE)
+    x = np.asarray(np.arange(ROWS) + 0.5)
+    y = np.asarray(np.arange(columns) + 0.5 * (columns > LINE))
     h, R = _start(m, excess, pulse, x[:, None], y)
     plane = Plane(bcre_ca.Rule(m.v, m.D_x, m.gamma, m.Sc, 1.0, 1.0))
     layers = ((sand.h, sand.R) for sand in frames(Sand(h, R), plane, TIMES, threads=1))
