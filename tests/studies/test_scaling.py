@@ -76,7 +76,7 @@ def verdicts(**changes):
 
 
 def test_all_goals_reached_agree():
-    assert verdicts() == [Verdict.AGREE] * 4
+    assert verdicts() == [Verdict.AGREE] * 5
     assert "2 of 2 ratios reach their goal" in study.judge(tables())[0].evidence
 
 
