@@ -49,10 +49,8 @@ def is_finite(value: Any) -> bool:
 
 def is_number(value: Any) -> bool:
     """Whether it is a real number, infinite or not, that fits into double precision."""
-    if isinstance(value, float):  # most are, and the abstract class is slow to ask
-        return value == value
-    try:
-        return isinstance(value, Real) and not math.isnan(value)
+    try:  # float first: most are, and the abstract class is slow to ask
+        return isinstance(value, (float, Real)) and not math.isnan(value)
     except OverflowError:
         return False
 

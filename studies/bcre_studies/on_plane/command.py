@@ -66,7 +66,7 @@ def run(
         raise ValueError(f"--model = {choice!r}: must be 'ca', 'pde' or 'both' on a plane")
     scene = admitted(origin, load, folder, FILES, is_own_folder)
     with failures_name_their_key(scene):
-        _require_memory(scene, frames, len(names))
+        require_memory(scene, frames, len(names))
         times = [float(t) for t in np.linspace(0.0, scene.time.until, frames)]
         runs = _runs(scene, names, times)
     return write(runs, folder, origin, animate)
@@ -108,12 +108,18 @@ def write(runs: Sequence[PlaneRun], folder: Path, origin: Origin, animate: bool)
     )
 
 
-def _require_memory(scene: PlaneScene, frames: int, models: int) -> None:
+def memory_of(scene: PlaneScene, frames: int, models: int) -> int:
+    """Bytes that a run of so many models takes, beyond its libraries."""
     domain = scene.domain
-    cells = domain.cells * domain.cells_across
+    return domain.cells * domain.cells_across * (frames * models * FRAME_BYTES + 200)
+
+
+def require_memory(scene: PlaneScene, frames: int, models: int) -> None:
+    """Refuse a run that would not fit."""
+    domain = scene.domain
     memory.require(
         f"domain.cells = {domain.cells} by {domain.cells_across} with --frames = {frames}",
-        cells * (frames * models * FRAME_BYTES + 200),
+        memory_of(scene, frames, models),
     )
 
 
