@@ -151,5 +151,5 @@ def test_models_are_timed_in_turns_so_that_a_slow_round_leaves_their_ratio(monke
     assert set(table.index) == {model.text for model in speeds.COMPARED}
     assert registry.EFFECTIVE.text not in table.index
     assert (table[["to_automaton", "smallest", "largest"]].loc["Hwa-Kardar"] == 3.0).all()
-    assert table.loc["automaton", "seconds_per_time"] == 2.5 / 400
+    assert table.loc["automaton", "seconds_per_time"] == 0.5 / 400
     assert calls[: len(speeds.COMPARED)] == calls[-len(speeds.COMPARED) :]

@@ -58,7 +58,7 @@ def growth_rate(t: tuple[float, float], R: tuple[float, float]) -> float:
 
 
 def reached_the_top(
-    x: ArrayLike, u_start: ArrayLike, u_end: ArrayLike, fallen: float = FALLEN
+    x: ArrayLike, u_start: ArrayLike, u_end: ArrayLike, *, fallen: float = FALLEN
 ) -> bool:
     """Mean fall of u over the top tenth > H0/2, H0 = u(top) - u(foot) at the start.
 

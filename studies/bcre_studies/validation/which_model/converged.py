@@ -32,8 +32,8 @@ def thresholds_claim(rows: pd.DataFrame) -> Claim:
         Verdict.AGREE if moved <= NEAR and nearer else Verdict.DISAGREE,
         sentences(
             f"S0 - Sc for pulses of {joined(f'{pulse:g}' for pulse in bcre.columns)}: BCRE "
-            + joined((f"{_row(bcre, n)} on {n} cells" for n in bcre.index), "; "),
-            "The automaton " + joined((f"{_row(rule, n)} on {n}" for n in rule.index), "; "),
+            + joined((f"{_row(bcre, n)} on {n:g} cells" for n in bcre.index), "; "),
+            "The automaton " + joined((f"{_row(rule, n)} on {n:g}" for n in rule.index), "; "),
             f"At d = 1 it moves by {by_part:.2g} where another part of the excess height counts as "
             "down, and with the time allowed: "
             + joined((f"{_row(by_time, t)} by t = {t:g}" for t in by_time.index), "; "),

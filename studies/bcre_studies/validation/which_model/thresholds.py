@@ -81,7 +81,7 @@ def comes_down(
     subject = next(one for one in SUBJECTS if one.name == model)
 
     def is_down(run: Run) -> bool:
-        return reached_the_top(run.x, run.u[0], run.u[-1], fallen)
+        return reached_the_top(run.x, run.u[0], run.u[-1], fallen=fallen)
 
     def over(run: Run) -> bool:
         return is_down(run) or (run.t[-1] > 0 and not run.R[-1].any())
