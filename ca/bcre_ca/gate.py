@@ -82,9 +82,36 @@ def require_kind(name: str, value: Any, kind: type) -> None:
         raise ValueError(f"{name} = {value!r}: must be of the kind {kind.__name__}")
 
 
+def is_finite(value: Any) -> bool:
+    """Whether it is a finite real number, and one that fits into double precision."""
+    return is_number(value) and math.isfinite(value)
+
+
+def is_number(value: Any) -> bool:
+    """Whether it is a real number, infinite or not, that fits into double precision."""
+    if isinstance(value, float):  # most are, and the abstract class is slow to ask
+        return value == value
+    try:
+        return isinstance(value, Real) and not math.isnan(value)
+    except OverflowError:
+        return False
+
+
+def require_not_negative(name: str, value: Any) -> None:
+    """Raise ValueError where the argument is no finite number >= 0."""
+    if not (is_finite(value) and value >= 0):
+        raise ValueError(f"{name} = {value!r}: must be a finite number >= 0")
+
+
+def require_positive(name: str, value: Any) -> None:
+    """Raise ValueError where the argument is no finite number > 0."""
+    if not (is_finite(value) and value > 0):
+        raise ValueError(f"{name} = {value!r}: must be a finite number > 0")
+
+
 def whole(name: str, number: Any, least: int = 0) -> int:
     """The whole number; ValueError where it is none, or too small."""
-    is_number = isinstance(number, Real) and not isinstance(number, (bool, np.bool_))
+    is_number = is_finite(number) and not isinstance(number, (bool, np.bool_))
     if not (is_number and float(number).is_integer() and number >= least):
         raise ValueError(f"{name} = {number!r}: must be a whole number >= {least}")
     return int(number)
@@ -94,9 +121,9 @@ def ascending(times: Iterable[Any], start: Any) -> list[float]:
     """The times as numbers, none before the one before it, the first not before ``start``."""
     try:
         wanted = [float(time) for time in times]
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ValueError(f"times = {times!r}: must be a sequence of numbers") from None
-    if not (isinstance(start, Real) and math.isfinite(start)):
+    if not is_finite(start):
         raise ValueError(f"t = {start!r}: must be a finite number")
     start = float(start)
     for before, time in zip([start, *wanted], wanted, strict=False):

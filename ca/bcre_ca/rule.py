@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from numbers import Real
 from typing import Any, Literal, get_args
 
 from bcre_ca import theory
 from bcre_ca.coefficients import Coefficients, Parameters, fold
 from bcre_ca.exchange import exchanging
+from bcre_ca.gate import is_number, require_not_negative, require_positive
 from bcre_ca.schemes import Calibrated, CompiledScheme, InPlace, Limited, Upwind
 from bcre_ca.stability import largest_step
 from bcre_ca.unstable import LAYER_BOUND, SLOPE_DRIVEN_BOUND, THICK_BOUND, WAVE_BOUND, UnstableStep
@@ -44,10 +44,6 @@ COMPILED: dict[str, CompiledScheme] = {
     "right": InPlace(downhill=True),
     "left": InPlace(downhill=False),
 }
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, Real) and math.isfinite(value)
 
 
 @dataclass(frozen=True)
@@ -111,18 +107,14 @@ class Rule:
 
     def __post_init__(self) -> None:
         for name in ("v", "D", "gamma", "Sc", "kappa", "dry", "Gamma", "beta"):
-            value = getattr(self, name)
-            if not (_is_number(value) and value >= 0):
-                raise ValueError(f"{name} = {value!r}: must be a finite number >= 0")
+            require_not_negative(name, getattr(self, name))
         for name in ("d", "dt"):
-            value = getattr(self, name)
-            if not (_is_number(value) and value > 0):
-                raise ValueError(f"{name} = {value!r}: must be a finite number > 0")
+            require_positive(name, getattr(self, name))
         for name, allowed in (("sign", Sign), ("order", Order), ("scheme", Scheme)):
             value = getattr(self, name)
             if value not in get_args(allowed):
                 raise ValueError(f"{name} = {value!r}: must be one of {get_args(allowed)}")
-        if not (isinstance(self.v_up, Real) and self.v_up > 0):
+        if not (is_number(self.v_up) and self.v_up > 0):
             raise ValueError(f"v_up = {self.v_up!r}: must be a number > 0")
         self._require_plain_scheme()
 

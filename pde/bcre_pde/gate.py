@@ -43,8 +43,16 @@ def require_kind(name: str, value: Any, kind: type) -> None:
 
 
 def is_finite(value: Any) -> bool:
-    """Whether it is a finite real number."""
-    return isinstance(value, Real) and math.isfinite(value)
+    """Whether it is a finite real number, and one that fits into double precision."""
+    return is_number(value) and math.isfinite(value)
+
+
+def is_number(value: Any) -> bool:
+    """Whether it is a real number, infinite or not, that fits into double precision."""
+    try:  # float first: most are, and the abstract class is slow to ask
+        return isinstance(value, (float, Real)) and not math.isnan(value)
+    except OverflowError:
+        return False
 
 
 def whole(name: str, value: Any, least: int) -> int:
@@ -59,7 +67,7 @@ def ascending(times: Iterable[Any]) -> list[float]:
     """The times as numbers, refused unless they ascend from 0 or later."""
     try:
         ordered = [float(t) for t in times]
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ValueError(f"times = {times!r}: must be a sequence of numbers") from None
     if not ordered or ordered[0] < 0 or not all(map(math.isfinite, ordered)):
         raise ValueError(f"times = {ordered!r}: must be finite, >= 0 and not empty")

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from numbers import Real
 
-from bcre_pde.gate import require_not_negative
+from bcre_pde.gate import is_number, require_not_negative
 
 
 @dataclass(frozen=True)
@@ -48,5 +47,5 @@ class Material:
     def __post_init__(self) -> None:
         for name in ("v", "D", "gamma", "Sc", "kappa", "Gamma"):
             require_not_negative(name, getattr(self, name))
-        if not (isinstance(self.v_up, Real) and self.v_up > 0):
+        if not (is_number(self.v_up) and self.v_up > 0):
             raise ValueError(f"v_up = {self.v_up!r}: must be > 0")

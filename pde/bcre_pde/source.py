@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from numbers import Real
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bcre_pde.gate import require_not_negative, require_positive
+from bcre_pde.gate import is_finite, is_number, require_not_negative, require_positive
 
 Array = NDArray[np.float64]
 
@@ -42,7 +41,9 @@ class Source:
         for name in ("rate", "start"):
             require_not_negative(f"source {name}", getattr(self, name))
         require_positive("source width", self.width)
-        if not (isinstance(self.until, Real) and self.until >= self.start):
+        if not is_finite(self.place):
+            raise ValueError(f"source place = {self.place!r}: must be a finite number")
+        if not (is_number(self.until) and self.until >= self.start):
             raise ValueError(f"source until = {self.until!r}: must be at least {self.start!r}")
 
     def poured(self, t: float) -> float:

@@ -65,6 +65,9 @@ STUDIES = {
         "validation.one_variable", "Control: which properties need the second layer?"
     ),
     "which_model": Entry("validation.which_model.study", "Which model has which property?"),
+    "quasi_static_limit": Entry(
+        "validation.quasi_static_limit.study", "When does a scene need no rolling layer?"
+    ),
     "order_of_accuracy": Entry(
         "verification.order_of_accuracy.study", "Observed order of accuracy on exact solutions"
     ),

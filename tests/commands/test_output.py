@@ -215,6 +215,25 @@ def test_bars_go_to_standard_error(capsys, monkeypatch):
     assert told.out == ""
 
 
+def test_a_quiet_run_shows_no_bars_on_a_terminal_and_says_its_refusal(
+    tmp_path, monkeypatch, capsys
+):
+    seen = []
+
+    def run(*_):
+        seen.append(sys.stderr.isatty())
+        raise ValueError("v = -1: must be >= 0")
+
+    monkeypatch.setattr("bcre_studies.on_line.command.run", run)
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    for quiet in ([], ["--quiet"]):
+        monkeypatch.setattr(sys, "argv", ["bcre", "run", "figure2", *quiet])
+        with pytest.raises(SystemExit):
+            cli.main()
+        assert capsys.readouterr().err == "bcre: v = -1: must be >= 0\n"
+    assert seen == [True, False]
+
+
 def test_version_is_that_of_the_package(bcre):
     assert bcre("--version") == (0, f"bcre {release()}\n", "")
 

@@ -163,5 +163,4 @@ def test_steps_of_a_run_lie_between_the_least_and_the_most(name, changes):
 def test_scene_that_a_model_does_not_take_is_refused_in_one_line(bcre):
     refusal = bcre("show", "figure2", "--set", "ends=sideways").refusal
     assert refusal.startswith("domain.ends = 'sideways': must be")
-    assert "is a scene on a plane" in bcre("show", "terrain").refusal
     assert "rolling.0.width" in bcre("show", "figure2", "--set", "rolling.0.width=-1").refusal

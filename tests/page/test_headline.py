@@ -220,6 +220,10 @@ CONDITIONS = [
     ("avalanche_extent", "only loses sand", ("quantity", "rolling"), "pde", 1.1),
     ("avalanche_extent", "wedge at repose", ("quantity", "even"), "pde", 0.1),
     ("uphill_propagation", "swept down", ("quantity", "front speed V"), "pde", 0.0),
+    ("opening_angle", "opens slowly", ("quantity", "edge of a layer"), "at x = 400", 50.0),
+    ("opening_angle", "spreads sideways", ("quantity", "threshold S0 - Sc"), "automaton", 0.1),
+    ("poured_heap", "does not converge", ("d", 0.25), "difference", 0.01),
+    ("plane_agreement", "has a direction", ("case", "figure 2"), "isotropic", 0.01),
 ]
 """A study, words that hang on its table, and the rows and the value with which they are false."""
 

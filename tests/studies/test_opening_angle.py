@@ -56,6 +56,24 @@ def test_a_ridge_brings_the_top_down_where_a_round_pulse_of_its_height_does_not(
     assert left == pytest.approx(1.4, abs=0.01)
 
 
+def test_in_bcre_too_a_ridge_brings_down_what_a_round_pulse_does_not():
+    """On the coarser grid; in the automaton both come down from this slope."""
+    came_down = [
+        pulses.end_in_bcre(MATERIAL, 1.6, 1.0, is_line, 50)[0] for is_line in (True, False)
+    ]
+    assert came_down == [True, False]
+    assert pulses.end_of(MATERIAL, 1.6, 1.0, pulses.PLANE)[0]
+
+
+def test_a_threshold_holds_on_every_grid():
+    found = pulses.threshold([lambda excess: excess > 1.0, lambda excess: excess > 1.03])
+    assert found.value - found.error <= 1.0
+    assert 1.03 < found.value + found.error < 1.04
+    alone = pulses.threshold([lambda excess: excess > 1.0])
+    assert alone.error < 0.005
+    assert abs(alone.value - 1.0) <= alone.error
+
+
 def test_the_continuation_to_90_degrees_is_exact_for_bcre():
     slopes = np.array([0.3, 0.5, 0.7])
     assert study.zero_of(slopes, 2.5 / slopes - 1) == pytest.approx(2.5, rel=1e-9)
@@ -83,6 +101,7 @@ def test_the_report_says_what_was_measured(recorded):
     assert found["opening angle, other materials"] is Verdict.DISAGREE
     assert found["diffusion of the cells in all directions"] is Verdict.DISAGREE
     assert found["90 degrees at Sd"] is Verdict.AGREE
+    assert found["finite pulses on a plane"] is Verdict.DISAGREE
 
 
 @pytest.mark.parametrize(
@@ -94,6 +113,7 @@ def test_the_report_says_what_was_measured(recorded):
         ("90 degrees at Sd", study.CRITICAL, "automaton", 1.9),
         ("edge of a layer", study.EDGE, "automaton", 27.4),
         ("how slowly an edge opens", study.EDGE, "factor", 0.6),
+        ("finite pulses on a plane in both models", study.THRESHOLD, "verdict", "disagree"),
     ],
 )
 def test_a_verdict_turns_when_its_number_does(recorded, claim, quantity, column, value):
@@ -102,7 +122,9 @@ def test_a_verdict_turns_when_its_number_does(recorded, claim, quantity, column,
 
 
 def test_equal_thresholds_and_an_isotropic_diffusion_would_agree(recorded):
-    same = changed(recorded, study.THRESHOLD, "plane", recorded["line"])
+    same = changed(recorded, study.THRESHOLD, "automaton", recorded["line"])
+    assert verdicts(same)["finite pulses on a plane"] is Verdict.DISAGREE  # BCRE's are not
+    same = changed(same, study.THRESHOLD, "pde", recorded["line_pde"])
     assert verdicts(same)["finite pulses on a plane"] is Verdict.AGREE
     even = changed(recorded, study.THETA, "isotropic", recorded["automaton"])
     assert verdicts(even)["diffusion of the cells in all directions"] is Verdict.AGREE

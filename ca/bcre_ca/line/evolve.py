@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from numbers import Real
 from typing import Any, Literal
 
 import numpy as np
@@ -12,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from bcre_ca.gate import (
     ascending,
+    is_number,
     layers_of,
     numbers_of,
     require,
@@ -178,7 +178,7 @@ def frames(
     require_ends(ends)
     pile = checked(pile)
     wanted = ascending(times, pile.t)
-    if not (isinstance(margin, Real) and 0 < margin <= 1):
+    if not (is_number(margin) and 0 < margin <= 1):
         raise ValueError(f"margin = {margin!r}: must be a number > 0 and at most 1")
     fixed = 0.0
     if not (isinstance(step, str) and step == "auto"):

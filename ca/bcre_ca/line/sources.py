@@ -10,6 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from bcre_ca.gate import is_finite, is_number, require_not_negative, require_positive
+
 Array = NDArray[np.float64]
 
 
@@ -32,15 +34,15 @@ class Source:
     until: float = math.inf
 
     def __post_init__(self) -> None:
-        must = {
-            "rate": (0 <= self.rate < math.inf, "a finite number >= 0"),
-            "width": (0 < self.width < math.inf, "a finite number > 0"),
-            "start": (0 <= self.start < math.inf, "a finite number >= 0"),
-            "until": (self.start <= self.until, f"at least start = {self.start!r}"),
-        }
-        for name, (allowed, what) in must.items():
-            if not allowed:
-                raise ValueError(f"source {name} = {getattr(self, name)!r}: must be {what}")
+        for name in ("rate", "start"):
+            require_not_negative(f"source {name}", getattr(self, name))
+        require_positive("source width", self.width)
+        if not is_finite(self.place):
+            raise ValueError(f"source place = {self.place!r}: must be a finite number")
+        if not (is_number(self.until) and self.start <= self.until):
+            raise ValueError(
+                f"source until = {self.until!r}: must be at least start = {self.start!r}"
+            )
 
 
 def supply_of(sources: Sequence[Source], t: float, cells: int, d: float) -> Array | None:

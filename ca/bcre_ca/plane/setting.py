@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
+from bcre_ca.gate import is_finite, require_kind, require_not_negative
 from bcre_ca.plane.coefficients import Coefficients, fold
 from bcre_ca.plane.sources import Source
 from bcre_ca.rule import Rule
@@ -61,16 +61,15 @@ class Plane:
             value = getattr(self, name)
             if value not in get_args(allowed):
                 raise ValueError(f"{name} = {value!r}: must be one of {get_args(allowed)}")
+        require_kind("rule", self.rule, Rule)
         for name, needed in ON_PLANE.items():
             value = getattr(self.rule, name)
             if value != needed:
                 raise ValueError(f"{name} = {value!r}: must be {needed!r} on a plane")
-        for name in ("D_across", "fall"):
-            value = getattr(self, name)
-            if value is not None and not (isinstance(value, (int, float)) and math.isfinite(value)):
-                raise ValueError(f"{name} = {value!r}: must be a finite number")
-        if self.D_across is not None and self.D_across < 0:
-            raise ValueError(f"D_across = {self.D_across!r}: must be >= 0")
+        if self.D_across is not None:
+            require_not_negative("D_across", self.D_across)
+        if self.fall is not None and not is_finite(self.fall):
+            raise ValueError(f"fall = {self.fall!r}: must be a finite number")
         self._require_arrays()
         object.__setattr__(self, "sources", tuple(self.sources))
         if not all(isinstance(source, Source) for source in self.sources):

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from numbers import Real
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from bcre_ca.gate import is_finite, is_number, require_not_negative, require_positive
 
 Array = NDArray[np.float64]
 
@@ -32,18 +33,12 @@ class Source:
     times: tuple[float, float] = (0.0, math.inf)
 
     def __post_init__(self) -> None:
-        if not (_is_finite(self.rate) and self.rate >= 0):
-            raise ValueError(f"rate = {self.rate!r}: must be a finite number >= 0")
-        if not (_are_two(self.place) and all(_is_finite(value) for value in self.place)):
+        require_not_negative("rate", self.rate)
+        if not (_are_two(self.place) and all(is_finite(value) for value in self.place)):
             raise ValueError(f"place = {self.place!r}: must be two finite numbers, x and y")
-        if not (_is_finite(self.width) and self.width > 0):
-            raise ValueError(f"width = {self.width!r}: must be a finite number > 0")
-        if not (_are_two(self.times) and _is_finite(self.times[0]) and _in_order(self.times)):
+        require_positive("width", self.width)
+        if not (_are_two(self.times) and is_finite(self.times[0]) and _in_order(self.times)):
             raise ValueError(f"times = {self.times!r}: must be a start and a stop not before it")
-
-
-def _is_finite(value: object) -> bool:
-    return isinstance(value, Real) and math.isfinite(value)
 
 
 def _are_two(values: object) -> bool:
@@ -51,7 +46,7 @@ def _are_two(values: object) -> bool:
 
 
 def _in_order(times: tuple[float, float]) -> bool:
-    return isinstance(times[1], Real) and times[0] <= times[1]
+    return is_number(times[1]) and times[0] <= times[1]
 
 
 class Cells(NamedTuple):

@@ -13,9 +13,8 @@ import math
 import numpy as np
 from pde import CartesianGrid, FieldCollection, ScalarField
 
-from bcre_pde.exchange import exchanging
 from bcre_pde.marched import Marched
-from bcre_pde.plane import fluxes, sums
+from bcre_pde.plane import fluxes, sums, theory
 from bcre_pde.plane.material import Material
 from bcre_pde.plane.problem import checked_cells
 from bcre_pde.problem import Array
@@ -110,16 +109,8 @@ class BCRE(Marched):
         self.weighted_sum(layers, terms, np.zeros(1), 1, 0.0, np.zeros_like(layers))
 
     def largest_explicit_step(self, largest_R: float) -> float:
-        """The bound of the line, with what spreads along and across added up."""
-        m = self.material
-        wet = exchanging(largest_R, m.along.saturation)
-        rolling = 32 / 15 * m.v / self.dx + self._spread(m.D_x, m.D_y)
-        climbing = 32 / 15 * m.gamma * wet / self.dx + self._spread(m.kappa_x, m.kappa_y) * wet
-        rate = max(rolling, climbing)
-        return 2.78 / rate if rate > 0 else math.inf
-
-    def _spread(self, along: float, across: float) -> float:
-        return 272 / 45 * (along / self.dx**2 + across / self.dy**2)
+        """:func:`bcre_pde.plane.theory.largest_explicit_step` on this grid."""
+        return theory.largest_explicit_step(self.material, self.dx, self.dy, largest_R)
 
     def cell(self, cell: int) -> tuple[int, int]:
         """(i, j), along and across."""

@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from numbers import Real
 from typing import Any, Literal, get_args
 
 import numpy as np
 
-from bcre_pde.gate import is_finite, require_kind, require_positive, whole
+from bcre_pde.gate import is_finite, is_number, require_kind, require_positive, whole
 from bcre_pde.plane.material import Material
 from bcre_pde.problem import SMALLEST_GRID, Array, Ends
 
@@ -57,7 +56,7 @@ class Problem:
         if not callable(self.initial):
             raise ValueError(f"initial = {self.initial!r}: must be a function of x and y")
         require_kind("material", self.material, Material)
-        if not (isinstance(self.thickness, Real) and self.thickness > 0):
+        if not (is_number(self.thickness) and self.thickness > 0):
             raise ValueError(f"thickness = {self.thickness!r}: must be > 0")
         if self.grain is not None and not (
             is_finite(self.grain) and 0 < self.grain <= self.thickness

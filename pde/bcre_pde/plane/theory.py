@@ -81,3 +81,21 @@ def surface_mode_rate(material: Material, R0: float, k_x: float, k_y: float) -> 
     """
     m = material
     return R0 * complex(-m.kappa_x * k_x**2 - m.kappa_y * k_y**2, m.gamma * k_x)
+
+
+def largest_explicit_step(material: Material, dx: float, dy: float, largest_R: float) -> float:
+    """Step at which an explicit Runge-Kutta method of order 4 is still stable on a plane.
+
+    As :func:`bcre_pde.theory.largest_explicit_step` on a line, with what spreads along and across
+    added up.
+    """
+    from bcre_pde.exchange import exchanging  # late: slow to import
+
+    def spread(along: float, across: float) -> float:
+        return 272 / 45 * (along / dx**2 + across / dy**2)
+
+    m, wet = material, exchanging(largest_R, material.along.saturation)
+    rolling = 32 / 15 * m.v / dx + spread(m.D_x, m.D_y)
+    climbing = 32 / 15 * m.gamma * wet / dx + spread(m.kappa_x, m.kappa_y) * wet
+    rate = max(rolling, climbing)
+    return 2.78 / rate if rate > 0 else math.inf

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext, redirect_stderr
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -61,7 +64,8 @@ def run(
     origin = Origin(scene, assignments)
     folder = out or Path("out") / origin.name
     command = on_plane if on_plane.takes(scene) else on_line
-    done = command.run(origin, model, frames, folder, out is None, animate)
+    with _without_bars() if quiet else nullcontext():
+        done = command.run(origin, model, frames, folder, out is None, animate)
     if as_json:
         files = [path.as_posix() for path in done.files]
         click.echo(json.dumps(done.record | {"notes": list(done.notes), "files": files}, indent=2))
@@ -69,6 +73,13 @@ def run(
         _say(done)
     if show:
         click.launch(str(done.picture))
+
+
+@contextmanager
+def _without_bars() -> Iterator[None]:
+    """Show no progress; a refusal is raised through it and printed afterwards."""
+    with Path(os.devnull).open("w", encoding="utf-8") as nowhere, redirect_stderr(nowhere):
+        yield
 
 
 def _say(done: Done) -> None:

@@ -17,6 +17,7 @@ from bcre_studies.models.registry import MODELS
 from bcre_studies.models.run import Run
 from bcre_studies.on_line.frames import time_unit
 from bcre_studies.on_line.quantities import Quantity
+from bcre_studies.running.columns import BOLD, headed
 from bcre_studies.system.one_line import one_line
 
 DIGITS = 4
@@ -38,14 +39,8 @@ def said(runs: Sequence[Run], found: Sequence[Quantity]) -> Iterator[RenderableT
 def table(runs: Sequence[Run], found: Sequence[Quantity]) -> Table:
     """A row for each quantity, and what the run took."""
     is_known = any(not math.isnan(quantity.error) for quantity in found)
-    shown = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    shown.add_column("")
-    for run in runs:
-        shown.add_column(MODELS[run.model].text, justify="right")
-    if is_known:
-        shown.add_column("its error", justify="right")
-    if len(runs) == 2:
-        shown.add_column("apart", justify="right", style="bold")
+    heads = [MODELS[run.model].text for run in runs]
+    shown = headed([*heads, *["its error"] * is_known, *[BOLD] * (len(runs) == 2)])
     for quantity in found:
         name = f"{quantity.name} ({quantity.unit})" if quantity.unit else quantity.name
         cells = [_value(quantity, run) for run in runs]

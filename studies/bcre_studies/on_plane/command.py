@@ -66,7 +66,7 @@ def run(
         raise ValueError(f"--model = {choice!r}: must be 'ca', 'pde' or 'both' on a plane")
     scene = admitted(origin, load, folder, FILES, is_own_folder)
     with failures_name_their_key(scene):
-        _require_memory(scene, frames, len(names))
+        require_memory(scene, frames, len(names))
         times = [float(t) for t in np.linspace(0.0, scene.time.until, frames)]
         runs = _runs(scene, names, times)
     return write(runs, folder, origin, animate)
@@ -85,7 +85,7 @@ def _runs(scene: PlaneScene, names: Sequence[str | None], times: list[float]) ->
 
 def write(runs: Sequence[PlaneRun], folder: Path, origin: Origin, animate: bool) -> Done:
     """Write the files of these runs of one scene."""
-    from bcre_studies.on_plane import netcdf, picture
+    from bcre_studies.on_plane import netcdf, picture, said
 
     summary = {run.model: run.summary() | origin.record(run.scene, folder) for run in runs}
     replace_bytes(folder / FRAMES, netcdf.content(runs))
@@ -97,25 +97,29 @@ def write(runs: Sequence[PlaneRun], folder: Path, origin: Origin, animate: bool)
 
         replace_bytes(folder / ANIMATION, animation.content(runs))
         written.append(ANIMATION)
-    lines = []
-    for name, numbers in summary.items():
-        facts = (f"{key} {_short(value)}" for key, value in numbers.items())
-        lines.append(f"{name}: {', '.join(facts)}")
     files = tuple(folder / name for name in written)
     picture_of = folder / (ANIMATION if animate else PICTURE)
-    return Done(files, picture_of, {"models": summary}, lines, list(doubts(runs[0].scene)))
+    return Done(
+        files=files,
+        picture=picture_of,
+        record={"models": summary, "quantities": said.record(runs)},
+        said=tuple(said.said(runs)),
+        notes=list(doubts(runs[0].scene)),
+    )
 
 
-def _short(value: object) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
-
-
-def _require_memory(scene: PlaneScene, frames: int, models: int) -> None:
+def memory_of(scene: PlaneScene, frames: int, models: int) -> int:
+    """Bytes that a run of so many models takes, beyond its libraries."""
     domain = scene.domain
-    cells = domain.cells * domain.cells_across
+    return domain.cells * domain.cells_across * (frames * models * FRAME_BYTES + 200)
+
+
+def require_memory(scene: PlaneScene, frames: int, models: int) -> None:
+    """Refuse a run that would not fit."""
+    domain = scene.domain
     memory.require(
         f"domain.cells = {domain.cells} by {domain.cells_across} with --frames = {frames}",
-        cells * (frames * models * FRAME_BYTES + 200),
+        memory_of(scene, frames, models),
     )
 
 

@@ -15,7 +15,7 @@ def number(value: float) -> str:
 
 def bcre(material: SceneMaterial) -> Iterator[str]:
     """BCRE with this material; terms that vanish are left out."""
-    flux = _sum(
+    flux = summed(
         (material.v, "R"),
         (material.Gamma / 2, "R^2"),
         (-material.D, "dR/dx"),
@@ -30,7 +30,7 @@ def automaton(rule: bcre_ca.Rule, material: SceneMaterial) -> Iterator[str]:
         yield f"the rule of the scheme {rule.scheme!r} on cells of d = {number(rule.d)}"
         return
     d, ratio, dt = number(rule.d), number(rule.dt / rule.d), number(rule.dt)
-    flux = _sum((rule.v, "R(i)"), (-rule.D, f"(R(i+1) - R(i))/{d}"))
+    flux = summed((rule.v, "R(i)"), (-rule.D, f"(R(i+1) - R(i))/{d}"))
     slope = f"(h(i) - h(i+1))/{d}"
     yield f"F(i) = {flux}"
     yield f"E(i) = {_exchange(material.model_copy(update={'kappa': 0.0}), 'R(i)', slope)}"
@@ -40,14 +40,14 @@ def automaton(rule: bcre_ca.Rule, material: SceneMaterial) -> Iterator[str]:
 def _exchange(material: SceneMaterial, R: str = "R", slope: str = "S") -> str:
     """gamma R (S - Sc) - kappa R d2h/dx2, over 1 + gamma R/v_up in a thick flow."""
     excess = f"({slope} - {number(material.Sc)})"
-    law = _sum((material.gamma, f"{R} {excess}"), (-material.kappa, f"{R} d2h/dx2"))
+    law = summed((material.gamma, f"{R} {excess}"), (-material.kappa, f"{R} d2h/dx2"))
     if material.v_up is None or law == "0":
         return law
     whole = f"({law})" if material.kappa else law
     return f"{whole}/(1 + {number(material.gamma / material.v_up)} {R})"
 
 
-def _sum(*terms: tuple[float, str]) -> str:
+def summed(*terms: tuple[float, str]) -> str:
     """Terms with their factors, those of factor 0 left out; 0 where none is left."""
     text = ""
     for factor, what in terms:

@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
-from bcre_studies.comparison.rounding import significant
 from bcre_studies.models.registry import BOTH, chosen
-from bcre_studies.preview import equations
+from bcre_studies.preview import equations, phrases
 from bcre_studies.preview.cells import TOLERANCE, cells_needed
-from bcre_studies.preview.effort import Effort, memory, of_automaton, of_bcre
+from bcre_studies.preview.effort import memory, of_automaton, of_bcre
 from bcre_studies.preview.equations import number
-from bcre_studies.preview.numbers import Numbers, explicit_step, numbers_of, regime
+from bcre_studies.preview.numbers import Numbers, explicit_step, numbers_of
+from bcre_studies.preview.phrases import Line
 from bcre_studies.running.run import notes
 from bcre_studies.scenes.scene import Scene
 from bcre_studies.system.memory import available
 from bcre_studies.system.one_line import one_line
 from bcre_studies.timing.costs import recorded
-
-Line = tuple[str, str]
-"""A name, which may be empty, and what is said under it."""
 
 
 def lines(scene: Scene, frames: int, source: str) -> Iterator[Line]:
@@ -39,44 +35,31 @@ def lines(scene: Scene, frames: int, source: str) -> Iterator[Line]:
     numbers = numbers_of(scene)
     yield "scene", one_line(scene.title)
     for name, rows in equations.of(scene, numbers.rule):
-        yield from _under(name, rows)
+        yield from phrases.under(name, rows)
     yield from _grid(scene, numbers)
-    yield from _dimensionless(numbers)
+    yield from phrases.dimensionless(numbers)
+    yield from _effective(numbers)
     yield from _stable(scene, numbers)
-    yield from _slopes(scene, numbers)
+    yield from phrases.slopes(numbers, scene.material.Sc, bool(scene.rolling))
     yield from _cells(scene, source)
     yield from _expected(scene, numbers, frames)
-    yield from _under("note", notes(scene, BOTH))
-
-
-def _under(name: str, rows: list[str]) -> Iterator[Line]:
-    for index, row in enumerate(rows):
-        yield ("" if index else name), row
+    yield from phrases.under("note", notes(scene, BOTH))
 
 
 def _grid(scene: Scene, numbers: Numbers) -> Iterator[Line]:
     rule, units = numbers.rule, scene.units
-    length, time = (f" {units.length}", f" {units.time}") if units else ("", "")
+    length = f" {units.length}" if units else ""
     yield (
         "domain",
         f"0 <= x <= {number(scene.domain.length)}{length}, ends {scene.domain.ends}; "
         f"{scene.domain.cells} cells of d = {number(rule.d)}{length}",
     )
-    how = ", at the start; a thick layer shortens it" if scene.time.step == "auto" else ""
-    how = how if numbers.is_stable else ", which is not stable and will be refused"
-    yield "time", f"0 <= t <= {number(scene.time.until)}{time}, dt = {number(rule.dt)}{time}{how}"
+    unit = units.time if units else ""
+    yield phrases.time(scene.time.until, unit, numbers, scene.time.step == "auto")
 
 
-def _dimensionless(numbers: Numbers) -> Iterator[Line]:
+def _effective(numbers: Numbers) -> Iterator[Line]:
     rule = numbers.rule
-    yield "Courant number", f"v dt/d = {number(numbers.courant)}"
-    yield "Peclet number", f"v d/D = {number(numbers.peclet)}"
-    least, most = numbers.exchange(numbers.largest_R), numbers.exchange(numbers.thickest)
-    yield (
-        "exchange number",
-        f"gamma R dt/d = {number(least)} for R = {number(numbers.largest_R)}, the thickest at the "
-        f"start; at most {number(most)}, for R = {number(numbers.thickest)}",
-    )
     if rule.scheme == "upwind":
         yield (
             "D_eff, kappa_eff",
@@ -95,24 +78,7 @@ def _stable(scene: Scene, numbers: Numbers) -> Iterator[Line]:
     cells = scene.solver.cells or scene.domain.cells
     step = explicit_step(scene, cells, numbers.largest_R)
     rows.append(f"BCRE, Runge-Kutta on {cells} cells: dt <= {number(step)} at the start")
-    yield from _under("stable steps", rows)
-
-
-def _slopes(scene: Scene, numbers: Numbers) -> Iterator[Line]:
-    Sc = scene.material.Sc
-    ca, pde = (
-        "no closed form" if math.isnan(Sd) else f"{number(Sd)} (Sd - Sc = {number(Sd - Sc)})"
-        for Sd in (numbers.sd_automaton, numbers.sd_bcre)
-    )
-    yield "repose slope", f"Sc = {number(Sc)}"
-    yield "critical slope", f"Sd = {ca} in the automaton, {pde} in BCRE"
-    mean, least, most = numbers.slope
-    is_even = most - least <= 1e-9 * max(abs(most), 1.0)
-    places = [("slope at start", mean)] if is_even else [("mean slope", mean), ("steepest", most)]
-    for name, slope in places:
-        yield name, f"S = {number(slope)}, {regime(slope, numbers, Sc)}"
-    if scene.rolling and not is_even:
-        yield "", "a thick pulse may climb below Sd too"
+    yield from phrases.under("stable steps", rows)
 
 
 def _cells(scene: Scene, source: str) -> Iterator[Line]:
@@ -128,7 +94,10 @@ def _cells(scene: Scene, source: str) -> Iterator[Line]:
 
 def _expected(scene: Scene, numbers: Numbers, frames: int) -> Iterator[Line]:
     taken = memory(scene, frames)
-    yield "memory", f"about {_bytes(taken)} of {_bytes(available())}, for {frames} frames"
+    yield (
+        "memory",
+        f"about {phrases.size(taken)} of {phrases.size(available())}, for {frames} frames",
+    )
     try:
         costs = recorded()
     except FileNotFoundError as missing:
@@ -138,25 +107,9 @@ def _expected(scene: Scene, numbers: Numbers, frames: int) -> Iterator[Line]:
         ("time, automaton", of_automaton(scene, numbers, costs, frames)),
         ("time, BCRE", of_bcre(scene, numbers, costs, frames)),
     ):
-        yield name, f"{_seconds(effort)}, {_range(*effort.steps)} steps"
+        yield (
+            name,
+            f"{phrases.span_of_seconds(*effort.seconds)}, "
+            f"{phrases.span_of_steps(*effort.steps)} steps",
+        )
     yield "", "on the machine of the record of speed; compiling comes on top, once"
-
-
-def _range(least: float, most: float) -> str:
-    low, high = (f"{significant(max(steps, 1.0), 2):,.0f}" for steps in (least, most))
-    return low if low == high else f"{low} to {high}"
-
-
-def _seconds(effort: Effort) -> str:
-    low, high = (_duration(seconds) for seconds in effort.seconds)
-    return low if low == high else f"{low} to {high}"
-
-
-def _duration(seconds: float) -> str:
-    if seconds < 1:
-        return f"{significant(1000 * seconds, 2):g} ms"
-    return f"{significant(seconds, 2):,g} s"
-
-
-def _bytes(count: int) -> str:
-    return f"{significant(count / 1e6, 2):,g} MB"

@@ -192,8 +192,8 @@ def load(source: str | Path, overrides: Sequence[str] = ()) -> Scene:
     data, folder = read(source, overrides, SECTIONS)
     if is_on_plane(data):
         raise SceneError(
-            f"{source}: is a scene on a plane, which bcre run takes; this command takes scenes on "
-            "a line, without domain.width and grids"
+            f"{source}: is a scene on a plane, for bcre run, show and play; this command takes "
+            "scenes on a line, without domain.width and grids"
         )
     return _validated(data, folder)
 

@@ -218,6 +218,7 @@ def draw(tables: dict[str, pd.DataFrame]) -> Figure:
     """Maps of R in figure 2's case, and the differences over the cell length."""
     figure, axes = style.panels(1, 4)
     figure.set_size_inches(13.0, 4.4)
+    figure.set_layout_engine("compressed", w_pad=0.1)  # maps of equal axes, all labels inside
     titles = {AUTOMATON.name: "automaton, d = 1", BCRE.name: "BCRE", ALONG: "BCRE with D_x,eff"}
     highest = tables["maps"]["R"].max()
     for axis, (name, table) in zip(axes, tables["maps"].groupby("model", sort=False), strict=False):

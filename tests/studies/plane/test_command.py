@@ -10,7 +10,9 @@ import xarray as xr
 
 from bcre_ca.plane import Sand, frames
 from bcre_studies import cli
+from bcre_studies.models.plane import automaton
 from bcre_studies.models.plane.automaton import plane_of
+from bcre_studies.on_plane import said
 from bcre_studies.scenes.plane.scene import load
 from bcre_studies.system.files import ROOT
 
@@ -128,11 +130,25 @@ def test_terrain_of_a_user_runs_from_the_line_of_the_readme(tmp_path, monkeypatc
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "argv", line.split())
     cli.main()
-    assert "mass_error" in capsys.readouterr().out
+    assert "volume eroded (m^3)" in capsys.readouterr().out
     with xr.open_dataset(tmp_path / "out" / "terrain" / "frames.nc") as found:
         assert dict(found.sizes) == {"t": 11, "y": 300, "x": 200}
         assert found.h[0].T.values == pytest.approx(heights, abs=1e-3)
         assert found.x[-1] == 399.0
+
+
+def test_what_is_printed_accounts_for_the_sand(tmp_path):
+    # Sand at the start, poured and eroded is what is left, laid down or out.
+    path = tmp_path / "heap.toml"
+    path.write_text(HEAP, encoding="utf-8")
+    scene = load(path)
+    run = automaton.run(scene, [0.0, scene.time.until])
+    volume = {number["quantity"]: number["ca"] for number in said.record([run])}
+    came = sum(volume[f"volume {name}"] for name in ("of R at the start", "poured", "eroded"))
+    went = ("of R left at the end", "laid down", "out through the foot")
+    assert came == pytest.approx(sum(volume[f"volume {name}"] for name in went), rel=1e-12)
+    assert volume["volume poured"] == pytest.approx(4.0, rel=1e-12)
+    assert volume["volume laid down"] > 0.1
 
 
 def test_summary_accounts_for_the_mass(bcre, tmp_path):

@@ -51,7 +51,9 @@ def test_built_in_scene_has_finite_layers_and_no_sand_rolls_in_a_wall(name):
 
 @pytest.mark.parametrize("name", plane_names())
 def test_command_for_lines_says_where_planes_are_taken(name):
-    with pytest.raises(SceneError, match=f"^{name}: is a scene on a plane, which bcre run takes"):
+    with pytest.raises(
+        SceneError, match=f"^{name}: is a scene on a plane, for bcre run, show and play"
+    ):
         line.load(name)
 
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from numbers import Real
 from typing import Literal, get_args
 
 import numpy as np
 
-from bcre_pde.gate import initial_layers, require_kind, require_positive
+from bcre_pde.gate import initial_layers, is_number, require_kind, require_positive
 from bcre_pde.material import Material
 from bcre_pde.problem import Array
 
@@ -35,7 +34,7 @@ class Source:
     def __post_init__(self) -> None:
         for name in ("rate", "radius"):
             require_positive(f"source {name}", getattr(self, name))
-        if not (isinstance(self.until, Real) and self.until > 0):
+        if not (is_number(self.until) and self.until > 0):
             raise ValueError(f"source until = {self.until!r}: must be > 0")
 
 

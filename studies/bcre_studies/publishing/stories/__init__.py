@@ -5,10 +5,17 @@ A study without an entry is described by its docstring and its claims.
 
 from __future__ import annotations
 
-from bcre_studies.publishing.stories import methods, paper, properties, space, speed
+from bcre_studies.publishing.stories import methods, paper, plane, properties, space, speed
 from bcre_studies.publishing.stories.story import Story
 
-STORIES = paper.STORIES | properties.STORIES | space.STORIES | methods.STORIES | speed.STORIES
+STORIES = (
+    paper.STORIES
+    | properties.STORIES
+    | plane.STORIES
+    | space.STORIES
+    | methods.STORIES
+    | speed.STORIES
+)
 
 
 def story_of(name: str, docstring: str) -> Story:

@@ -6,7 +6,7 @@ import pandas as pd
 
 from bcre_studies.models.registry import AUTOMATON, BCRE
 from bcre_studies.publishing.stories.story import Story, Tables
-from bcre_studies.publishing.wording import figure_name, listed, number, of, percent, span_of
+from bcre_studies.publishing.wording import figure_name, listed, number, of, percent, span, span_of
 from bcre_studies.scenes.scene import load
 
 DRIFT = 0.001
@@ -106,6 +106,20 @@ def _which_model(tables: Tables) -> list[str]:
     return sentences
 
 
+def _quasi_static_limit(tables: Tables) -> list[str]:
+    heaps, figures = tables["comparison"], tables["figures"]
+    pde = heaps[heaps["model"] == BCRE.name]
+    least, most = (pde.loc[pde["error"].astype(float).idxmin()], pde["error"].astype(float).max())
+    return [
+        "A heap is fed at its top, and its surface is compared with one that never leaves repose "
+        "and takes no time to roll.",
+        f"BCRE is within {percent(float(least['error']))} of it where ε = "
+        f"{number(float(least['eps']))} and τ = {number(float(least['tau']))}, and off by up to "
+        f"{percent(most)} on the map.",
+        f"The paper’s figures have ε = {span([float(eps) for eps in figures['eps']])}.",
+    ]
+
+
 def _choices(tables: Tables) -> list[str]:
     rows = tables["comparison"]
     verdicts = rows.groupby("verdict on", sort=False)["stands"].agg(
@@ -155,6 +169,13 @@ STORIES: dict[str, Story] = {
         "Models down, properties across; in each cell what the model does and the number that "
         "decides.",
         _which_model,
+    ),
+    "quasi_static_limit": Story(
+        "When does a scene need no rolling layer at all?",
+        ("ε = v/(gamma Sc l)", "τ = Q/(v A)"),
+        "Error of the surface without a rolling layer on the map of ε and τ, with the paper’s "
+        "figures; slope over ε and sand at rest over τ in both models.",
+        _quasi_static_limit,
     ),
     "choices": Story(
         "Do the verdicts depend on what we chose ourselves?",

@@ -74,7 +74,8 @@ def _tilting(rows: pd.DataFrame) -> Claim:
 def _feeding(rows: pd.DataFrame) -> Claim:
     exponents = rows["exponent"]
     same = exponents.max() - exponents.min() <= SAME_EXPONENT
-    better = ((rows["over_lognormal"] > 0) & (rows["p_lognormal"] <= SIGNIFICANT)).all()
+    decided = rows["p_lognormal"] <= SIGNIFICANT
+    better, worse = (decided & (sign * rows["over_lognormal"] > 0) for sign in (1, -1))
     told = ", ".join(
         f"{row.exponent:.2f} +- {row.exponent_band:.2f} over {row.decades:.1f} decades ({name})"
         for name, row in rows.iterrows()
@@ -82,10 +83,10 @@ def _feeding(rows: pd.DataFrame) -> Claim:
     return Claim(
         "sizes under feeding",
         "Under slow feeding one power law holds at every length of the slope.",
-        Verdict.AGREE if same and better else Verdict.DISAGREE,
+        Verdict.AGREE if same and better.all() else Verdict.DISAGREE,
         f"the best fits have exponents {told}; "
-        + ("a power law fits better than" if better else "no fit is better than that of")
-        + f" a lognormal (p = {', '.join(f'{p:.1g}' for p in rows['p_lognormal'])})"
+        + f"than a lognormal a power law fits better at {better.sum()} of {len(rows)} lengths and "
+        f"worse at {worse.sum()} (p = {', '.join(f'{p:.1g}' for p in rows['p_lognormal'])})"
         + ("" if same else ". The exponents differ, so that sizes do not scale with one of them"),
         WHY_LAW,
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
@@ -34,7 +35,7 @@ def draw(tables: dict[str, pd.DataFrame], critical: tuple[float, float]) -> Figu
     _tail(axes[3], sizes[sizes["drive"] == "tilting, length"], "Tilting, trigger 0.001: a gap")
     _tail(axes[4], sizes[sizes["drive"] == "feeding"], "Feeding: no one power law")
     for shade, (_, row) in zip(SHADES, table[table["drive"] == "feeding"].iterrows(), strict=False):
-        _law(axes[4], sizes, str(row["case"]), float(row["exponent"]), shade)
+        _law(axes[4], sizes, row, shade)
     axes[4].set_ylim(bottom=1e-4)
     _small(axes[5], tables["small"])
     return figure
@@ -121,14 +122,15 @@ def _tail(axis: Axes, sizes: pd.DataFrame, title: str) -> None:
     axis.legend(fontsize=7.5, loc="lower left")
 
 
-def _law(axis: Axes, sizes: pd.DataFrame, name: str, exponent: float, shade: str) -> None:
-    """The fitted slope of the tail, through its middle."""
-    rows = sizes[(sizes["drive"] == "feeding") & (sizes["case"] == name) & (sizes["share"] > 0)]
-    size, share = rows["size"].to_numpy(), rows["share"].to_numpy()
-    middle = size.size * 2 // 3
+def _law(axis: Axes, sizes: pd.DataFrame, fit: pd.Series, shade: str) -> None:
+    """The fitted power law, from where its tail begins."""
+    rows = sizes[(sizes["drive"] == "feeding") & (sizes["case"] == fit["case"])]
+    least = float(fit["from_size"])
+    tail = np.geomspace(least, float(rows["size"].max()), 2)
+    share = float(np.interp(least, rows["size"], rows["share"]))
     axis.plot(
-        size[middle // 2 :],
-        share[middle] * (size[middle // 2 :] / size[middle]) ** (1 - exponent),
+        tail,
+        share * (tail / least) ** (1 - float(fit["exponent"])),
         color=shade,
         linewidth=0.9,
         linestyle="--",

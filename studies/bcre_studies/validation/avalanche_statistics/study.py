@@ -71,7 +71,7 @@ LENGTH_SEEDS = range(1, 4)
 FROM_FOOT = 15.0
 """Of triggers that are always at one place: as in figure 1."""
 
-FED = (32, 64, 128)
+FED = (32, 64, 128, 256)
 GRAINS_A_CELL = 45
 SETTLING = 1 / 3
 """Part of the grains after which as much leaves as comes."""
@@ -222,6 +222,7 @@ def _fit_row(name: str, fit: PowerLaw) -> Row:
         "seeds": 1,
         "exponent": significant(fit.exponent, 3),
         "exponent_band": significant(1.96 * (fit.exponent - 1) / fit.tail**0.5, 2),
+        "from_size": significant(fit.least, 3),
         "decades": round(fit.decades, 1),
         "tail": fit.tail,
         "p_exponential": significant(fit.p_exponential, 1),

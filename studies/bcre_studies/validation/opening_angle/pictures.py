@@ -122,9 +122,12 @@ def _draw_edges(axis: Axes, edges: pd.DataFrame, angles: pd.DataFrame) -> None:
 
 
 def _draw_thresholds(axis: Axes, rows: pd.DataFrame) -> None:
-    for column, fill in (("line", "none"), ("plane", "full")):
-        look = AUTOMATON.markers(fillstyle=fill) | {"linestyle": "-", "linewidth": 0.8}
-        axis.plot(rows["pulse"], rows[column], **look, label=f"on a {column}")
+    """Hollow on a line, full on a plane."""
+    for model, line in ((AUTOMATON, "line"), (BCRE, "line_pde")):
+        for column, fill, where in ((line, "none", "line"), (model.column, "full", "plane")):
+            look = model.markers(fillstyle=fill) | model.line | {"linewidth": 0.8}
+            axis.plot(rows["pulse"], rows[column], **look, label=f"{model.label}, {where}")
+    axis.plot(rows["pulse"], rows[EFFECTIVE.column], **EFFECTIVE.markers())
     axis.set(xscale="log", ylim=(0, None), xlabel="pulse amplitude (length)")
     axis.set_ylabel("threshold S0 - Sc")
     axis.legend()

@@ -17,8 +17,9 @@ q(m) = Pe (1 - e^-m) - 2 (cosh m - 1) - sigma d^2/D_x,
   parabola through three measured angles gives where it is 0.
 * ``edge of a layer``: avalanches that do erode, in a layer of thickness 0.2 on a rigid base, from
   pulses of three sizes (``layer``). The angle between x - 20 and x + 20, and what it tends to.
-* ``threshold S0 - Sc``: from which slope on a finite pulse on a plane brings the top down, and a
-  ridge as high and wide on a line (``pulses``).
+* ``threshold S0 - Sc``: from which slope on a finite pulse on a plane brings the top down, and in
+  the columns "line" a ridge as high and wide (``pulses``). "effective" has kappa_x = gamma d/2 too,
+  because a finite pulse erodes.
 """
 
 from __future__ import annotations
@@ -89,10 +90,10 @@ Case = tuple[Callable[..., Result], tuple[Any, ...]]
 
 def run() -> dict[str, pd.DataFrame]:
     """All rows, the slow ones measured first; the edges of the layers, and one of them as a map."""
-    cases: list[Case] = [(angle, case) for case in sorted(ANGLES, key=lambda case: case[1])]
+    cases: list[Case] = [(threshold, (pulse,)) for pulse in PULSES]
+    cases += [(angle, case) for case in sorted(ANGLES, key=lambda case: case[1])]
     cases += [(edge_of_layer, case) for case in LAYERS]
     cases += [(critical, (name, model)) for name in (FIGURE_1, "fast") for model in (True, False)]
-    cases += [(threshold, (pulse,)) for pulse in PULSES]
     found = each(_case, cases, "opening_angle")
     rows = sorted((row for rows, _ in found for row in rows), key=_place)
     tables = {"comparison": pd.DataFrame(rows)}
@@ -192,14 +193,21 @@ def edge_of_layer(excess: float, pulse: float) -> Result:
 
 
 def threshold(pulse: float) -> Result:
-    """From which slope on the pulse brings the top down, on a line and on a plane."""
+    """From which slope on the pulse brings the top down, on a plane and on a line."""
     m = MATERIALS[FIGURE_1]
-    on = {
-        name: pulses.threshold(m, pulse, columns)
-        for name, columns in (("line", pulses.LINE), ("plane", pulses.PLANE))
+    own, line = (pulses.in_automaton(m, pulse, columns) for columns in (pulses.PLANE, pulses.LINE))
+    pde, line_pde = (pulses.in_bcre(m, pulse, is_line) for is_line in (False, True))
+    effective = pulses.in_bcre(pulses.with_cells(m), pulse, False)
+    row = {
+        **_head(THRESHOLD, FIGURE_1, m),
+        "d": 1.0,
+        "pulse": pulse,
+        "automaton_error": significant(own.error, 1),
+        **Comparison(to_error(own.value, own.error), pde, effective, claims.TOLERANCE).row(),
+        "line": to_error(line.value, line.error),
+        "line_pde": to_error(line_pde.value, line_pde.error),
     }
-    row = {**_head(THRESHOLD, FIGURE_1, m), "d": 1.0, "pulse": pulse}
-    return [row | {name: to_error(t.value, t.error) for name, t in on.items()}], {}
+    return [row], {}
 
 
 def _head(quantity: str, case: str, m: Material) -> Row:
@@ -223,6 +231,7 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
         claims.layers(layers, PLACES),
         claims.slowness(layers),
         claims.pulses(thresholds),
+        claims.same_threshold(thresholds),
     ]
 
 

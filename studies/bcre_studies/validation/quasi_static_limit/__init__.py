@@ -1,0 +1,1 @@
+"""When does a scene need no rolling layer?"""
