@@ -39,7 +39,8 @@ class Marched(PDEBase):  # type: ignore[misc]
         self._layers = np.zeros(state.data.shape)
         self.last_layers = self._layers
         self._rates = state.copy()
-        self._rates.data[...] = 0.0
+        # The data of a field leave gaps for ghost cells: compiled code would be compiled once more.
+        self._without_gaps = np.zeros(state.data.shape)
 
     @abstractmethod
     def rate(self, layers: Array, out: Array) -> None:
@@ -61,7 +62,8 @@ class Marched(PDEBase):  # type: ignore[misc]
         """The right-hand side, in one field that every call overwrites (py-pde copies it)."""
         # A copy: SciPy may reuse its memory before a failure is reported.
         np.copyto(self._layers, state.data)
-        self.write_rate(self._layers, self._rates.data, t)
+        self.write_rate(self._layers, self._without_gaps, t)
+        np.copyto(self._rates.data, self._without_gaps)
         return self._rates
 
     def write_rate(self, layers: Array, out: Array, t: float = 0) -> None:

@@ -17,7 +17,9 @@ def arguments(n, kappa, saturation, periodic=False, seed=3, D=0.2):
     rng = np.random.default_rng(seed)
     state = np.array([rng.normal(size=n), rng.uniform(-0.5, 3, n), rng.normal(size=n)])
     scratch = np.empty((2, n + 6)), np.empty((2, n + 1))
-    return state, np.empty((3, n)), *scratch, 1.3, D, GAMMA, kappa, 0.5, periodic, saturation
+    absent = None, None, None
+    numbers = 1.3, D, GAMMA, kappa, 0.5, periodic, saturation
+    return state, np.empty((3, n)), *scratch, *numbers, *absent
 
 
 def test_linear_law_is_gamma_R_times_the_excess_slope_and_kappa_R_times_the_curvature():

@@ -19,7 +19,9 @@ def rate(
     state[0], state[1], state[2, 0] = u, R, foot
     out = np.full((3, n), np.nan)
     scratch = np.empty((2, n + 6)), np.empty((2, n + 1))
-    fluxes.rate(state, out, *scratch, v, D, gamma, kappa, dx, periodic, saturation)
+    fluxes.rate(
+        state, out, *scratch, v, D, gamma, kappa, dx, periodic, saturation, None, None, None
+    )
     return out[0], out[1], out[2, 0], out[2, -1] * n * dx
 
 
