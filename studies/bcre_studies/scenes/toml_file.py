@@ -53,8 +53,16 @@ def read(source: str | Path, overrides: Sequence[str], sections: Sections) -> tu
 
 def _folder(path: Path, data: dict[str, Any]) -> Path:
     """Where the scene's tables lie: beside it, or beside the file that a link leads to."""
-    lacks = any(not (path.parent / name).is_file() for name in _files(data))
-    return path.resolve().parent if lacks and path.is_symlink() else path.parent
+    if path.is_symlink() and not all(_is_file(path.parent / name) for name in _files(data)):
+        return path.resolve().parent
+    return path.parent
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except OSError:  # a name that is too long
+        return False
 
 
 def _files(data: Mapping[str, Any]) -> list[str]:
