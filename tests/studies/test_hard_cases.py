@@ -7,10 +7,17 @@ import pytest
 import bcre_ca
 import bcre_pde
 from bcre_studies.comparison.verdict import Verdict
-from bcre_studies.verification.hard_cases import adaptive_step, scarp_grids, study
-from bcre_studies.verification.hard_cases.study import FAILS, REFUSED, SURVIVES, Attempt
+from bcre_studies.verification.hard_cases import (
+    adaptive_step,
+    attempts,
+    claims,
+    hard_scenes,
+    scarp_grids,
+    study,
+)
+from bcre_studies.verification.hard_cases.attempts import FAILS, REFUSED, SURVIVES, Attempt
 
-SCENES = study.scenes()
+SCENES = hard_scenes.scenes()
 
 
 @pytest.mark.parametrize(
@@ -21,14 +28,14 @@ SCENES = study.scenes()
     ],
 )
 def test_fixed_steps_are_refused_where_known_and_fail_by_name_where_outgrown(scene, message):
-    row = study._try(Attempt(scene, "ca", "upwind", 1.0))
+    row = attempts.tried(Attempt(scene, "ca", "upwind", 1.0))
     assert row["verdict"] == (REFUSED if "2.5" in scene else FAILS)
     assert row["message"].startswith(message)
-    assert study._try(Attempt(scene, "ca"))["verdict"].startswith(SURVIVES)
+    assert attempts.tried(Attempt(scene, "ca"))["verdict"].startswith(SURVIVES)
 
 
 def test_an_avalanche_outgrows_its_step_after_t_200_where_R_passes_100():
-    message = study._try(Attempt("figure 1, dt = 1", "ca", "upwind", 1.0))["message"]
+    message = attempts.tried(Attempt("figure 1, dt = 1", "ca", "upwind", 1.0))["message"]
     assert 200 < float(message.split("t = ")[1].split(",")[0]) < 400
     assert 100 < float(message.split("R = ")[1].split(";")[0]) < 120
     assert "in cell 63" in message
@@ -36,17 +43,17 @@ def test_an_avalanche_outgrows_its_step_after_t_200_where_R_passes_100():
 
 @pytest.mark.parametrize("scene", ["1 cell", "2 cells"])
 def test_grids_too_small_for_bcre_are_refused_and_no_trouble_to_the_automaton(scene):
-    row = study._try(Attempt(scene, "pde"))
+    row = attempts.tried(Attempt(scene, "pde"))
     assert (row["verdict"], row["mass_error_at_most"]) == (REFUSED, "")
     assert "must be a whole number, at least 8" in row["message"]
-    for scheme in study.SCHEMES:
-        assert study._try(Attempt(scene, "ca", scheme))["verdict"] == SURVIVES
+    for scheme in attempts.SCHEMES:
+        assert attempts.tried(Attempt(scene, "ca", scheme))["verdict"] == SURVIVES
 
 
-@pytest.mark.parametrize("scheme", study.SCHEMES)
+@pytest.mark.parametrize("scheme", attempts.SCHEMES)
 @pytest.mark.parametrize("scene", [name for name in SCENES if name != "kappa = 10"])
 def test_step_that_follows_its_bounds_survives_everything_with_R_not_negative(scene, scheme):
-    row = study._try(Attempt(scene, "ca", scheme))
+    row = attempts.tried(Attempt(scene, "ca", scheme))
     assert row["verdict"].startswith(SURVIVES)
     assert row["smallest_R"] >= 0
     assert row["mass_error_at_most"] <= 1e-12
@@ -60,7 +67,7 @@ def end_of(name, model):
         end = bcre_pde.solve(scene.problem, [0.0, scene.until], scene.cells)
         return end.h[0], end.h[-1], end.R
     h, R = scene.problem.initial(scene.centres())
-    (end,) = bcre_ca.frames(bcre_ca.Pile(h, R), study.rule_for(scene, "upwind"), [scene.until])
+    (end,) = bcre_ca.frames(bcre_ca.Pile(h, R), attempts.rule_for(scene, "upwind"), [scene.until])
     return h, end.h, np.array([R, end.R])
 
 
@@ -76,17 +83,17 @@ def test_layer_carried_up_a_surface_that_rises_in_x_is_laid_down_there(model):
 
 
 def test_long_run_keeps_its_mass(monkeypatch):
-    row = study._try(study._cases(study.long_run())[0])
+    row = attempts.tried(attempts.attempts(hard_scenes.long_run())[0])
     assert row["verdict"] == SURVIVES
-    assert row["mass_error_at_most"] <= study.MASS
-    assert study.long_run().until / study.long_run().steps[0] == 1e7
+    assert row["mass_error_at_most"] <= claims.MASS
+    assert hard_scenes.long_run().until / hard_scenes.long_run().steps[0] == 1e7
 
 
 def test_failure_at_the_start_of_the_solver_is_a_refusal_and_later_one_is_not():
-    at_start = study._refusal(bcre_pde.SolveError("too many", 0.0, 3))
-    later = study._refusal(bcre_pde.SolveError("gave up", 2.0, 3))
+    at_start = attempts._refusal(bcre_pde.SolveError("too many", 0.0, 3))
+    later = attempts._refusal(bcre_pde.SolveError("gave up", 2.0, 3))
     assert (at_start["verdict"], later["verdict"]) == (REFUSED, FAILS)
-    assert study._refusal(FloatingPointError("outgrew"))["verdict"] == FAILS
+    assert attempts._refusal(FloatingPointError("outgrew"))["verdict"] == FAILS
 
 
 def scarp_rows(drift):
@@ -123,7 +130,7 @@ def test_adapted_step_of_figure_2_gives_the_fixed_steps_R():
 def made_up(message="in cell 3, t = 4: dt = 1", smallest=0.0, mass=1e-13):
     rows = [
         {
-            "scene": study.long_run().name,
+            "scene": hard_scenes.long_run().name,
             "verdict": SURVIVES,
             "message": "",
             "smallest_R": smallest,

@@ -3,16 +3,16 @@
 import pytest
 
 from bcre_studies.comparison.claim import Claim
-from bcre_studies.comparison.verdict import Verdict
-from bcre_studies.paper_claims import (
+from bcre_studies.comparison.paper_claim import (
     CONDITIONAL,
-    PAPER_CLAIMS,
     REFUTED,
     REPRODUCED,
     UNDECIDED,
     UNTESTABLE,
     PaperClaim,
 )
+from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.paper_claims import PAPER_CLAIMS
 from bcre_studies.publishing.write import recorded_verdicts
 
 STATED, CONDITION, AGAINST = ("s", "as stated"), ("s", "condition"), ("s", "against")

@@ -13,7 +13,7 @@ from typing import Any, Protocol
 
 import bcre_ca
 from bcre_studies.comparison.claim import Claim
-from bcre_studies.paper_claims import PaperClaim
+from bcre_studies.comparison.paper_claim import PaperClaim
 from bcre_studies.publishing.answers import answers, certainty, short_answer
 from bcre_studies.publishing.deciding import deciding_number
 from bcre_studies.publishing.film import FRAMES, films

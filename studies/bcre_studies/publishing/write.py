@@ -11,7 +11,8 @@ import pandas as pd
 
 from bcre_studies.catalog import STUDIES
 from bcre_studies.comparison.claim import Claim
-from bcre_studies.paper_claims import PAPER_CLAIMS, PaperClaim
+from bcre_studies.comparison.paper_claim import PaperClaim
+from bcre_studies.paper_claims import PAPER_CLAIMS
 from bcre_studies.publishing.finding import Finding, find
 from bcre_studies.publishing.page import write_pages
 from bcre_studies.reporting.pages import render
