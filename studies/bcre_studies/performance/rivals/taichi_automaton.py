@@ -10,15 +10,19 @@ Taichi belongs to the dependency group ``bench`` and is imported when it is used
 # Without future annotations: Taichi reads those of its kernels itself.
 from collections.abc import Callable
 from importlib.util import find_spec
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from bcre_ca import Rule
 from bcre_studies.scenes.domain import Array
 
-March = Callable[[int], tuple[Array, Array]]
-"""So many steps further; h and R, which are copied out of Taichi's fields."""
+
+class March(NamedTuple):
+    """``take(steps)`` goes so many steps further; ``layers()`` copies h and R out of the fields."""
+
+    take: Callable[[int], None]
+    layers: Callable[[], tuple[Array, Array]]
 
 
 def available() -> bool:
@@ -43,16 +47,18 @@ def prepare(h: Array, R: Array, rule: Rule, threads: int) -> March:
     there, back = _step(rule, *fields), _step(rule, *fields[2:], *fields[:2])
     taken = 0
 
-    def march(steps: int) -> tuple[Array, Array]:
+    def take(steps: int) -> None:
         nonlocal taken
         for _ in range(steps):
             (back if taken % 2 else there)()
             taken += 1
         ti.sync()
+
+    def layers() -> tuple[Array, Array]:
         first = 2 * (taken % 2)
         return fields[first].to_numpy(), fields[first + 1].to_numpy()
 
-    return march
+    return March(take, layers)
 
 
 def _step(rule: Rule, h: Any, R: Any, h_next: Any, R_next: Any) -> Callable[[], None]:
