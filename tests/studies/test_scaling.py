@@ -4,7 +4,23 @@ import pandas as pd
 import pytest
 
 from bcre_studies.comparison.verdict import Verdict
+from bcre_studies.models import registry
 from bcre_studies.performance import scaling as study
+from bcre_studies.performance.record import models as speeds
+
+
+def models(**seconds):
+    """Every model takes a second, its automaton a tenth, on 100 cells and twice that on 400."""
+    own = dict.fromkeys((model.text for model in registry.MODELS.values()), 1.0)
+    own |= {rule.text: 0.1 for rule in (registry.AUTOMATON, registry.THICK_AUTOMATON)}
+    own |= {registry.SLOPE_DRIVEN_AUTOMATON.text: 0.1} | seconds
+    return pd.DataFrame(
+        [
+            {"model": model, "cells": cells, "seconds_per_time": factor * taken}
+            for cells, factor in ((100, 1), (400, 2))
+            for model, taken in own.items()
+        ]
+    )
 
 
 def tables(ratios=((2.0, 1.5), (0.9, 0.8)), upwind=(4000.0, 300.0), pde=(50.0, 20.0), **on_plane):
@@ -51,7 +67,7 @@ def tables(ratios=((2.0, 1.5), (0.9, 0.8)), upwind=(4000.0, 300.0), pde=(50.0, 2
             },
         ]
     )
-    more = {"plane": plane, "plane_budget": squares}
+    more = {"plane": plane, "plane_budget": squares, "models": models()}
     return {"comparison": comparison, "budget": budget, **more}
 
 
@@ -60,7 +76,7 @@ def verdicts(**changes):
 
 
 def test_all_goals_reached_agree():
-    assert verdicts() == [Verdict.AGREE] * 4
+    assert verdicts() == [Verdict.AGREE] * 5
     assert "2 of 2 ratios reach their goal" in study.judge(tables())[0].evidence
 
 
@@ -108,3 +124,32 @@ def test_loads_on_a_plane_count_the_cells_that_they_step():
     h, R = plane.wet_plane(12)
     assert h.shape == R.shape == (12, 12)
     assert R.min() > 0
+
+
+def test_automaton_slower_than_its_model_turns_the_verdict_on_models():
+    def claim(**seconds):
+        changed = tables() | {"models": models(**seconds)}
+        return {claim.name: claim for claim in study.judge(changed)}["models on figure 1"]
+
+    assert claim().verdict is Verdict.AGREE
+    assert "10 to 10 times" in claim().evidence
+    slow = claim(**{registry.THICK_AUTOMATON.text: 2.0})
+    assert slow.verdict is Verdict.DISAGREE
+    assert f"{registry.THICK_AUTOMATON.text} 0.5 to 0.5 times" in slow.evidence
+
+
+def test_models_are_timed_in_turns_so_that_a_slow_round_leaves_their_ratio(monkeypatch):
+    calls = []
+
+    def run(model, scene, cells):
+        calls.append(model.name)
+        slow = 5.0 if len(calls) > 5 * len(speeds.COMPARED) else 1.0
+        return slow * (0.5 if model is registry.AUTOMATON else 1.5), 7
+
+    monkeypatch.setattr(speeds, "_run", run)
+    table = speeds.measure(cells=[100], rounds=5).set_index("model")
+    assert set(table.index) == {model.text for model in speeds.COMPARED}
+    assert registry.EFFECTIVE.text not in table.index
+    assert (table[["to_automaton", "smallest", "largest"]].loc["Hwa-Kardar"] == 3.0).all()
+    assert table.loc["automaton", "seconds_per_time"] == 0.5 / 400
+    assert calls[: len(speeds.COMPARED)] == calls[-len(speeds.COMPARED) :]

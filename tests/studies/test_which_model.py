@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from bcre_studies.validation.which_model import closures, study
+from bcre_studies.validation.which_model import closures, study, thresholds
 from bcre_studies.validation.which_model import properties as measured
 
 NAMED = {subject.name: subject for subject in measured.SUBJECTS}
@@ -83,3 +83,24 @@ def test_every_closure_has_a_model_and_an_automaton():
 def test_automaton_of_a_slope_driven_layer_differs_from_its_model_by_the_diffusion_of_its_cells():
     row = closures.profile(("Hadeler-Kuttler", "figure3"))
     assert row["difference_effective"] < 0.2 * row["difference"]
+
+
+@pytest.mark.parametrize(
+    ("cells", "pulse", "stands", "falls"),
+    [(100, 1e-6, 1.96, 2.0), (100, 1.0, 1.25, 1.3), (400, 1.0, 1.4, 1.45), (400, 10.0, 0.98, 1.02)],
+)
+def test_slope_that_a_pulse_brings_down_is_steeper_on_finer_cells(cells, pulse, stands, falls):
+    assert not thresholds.comes_down("automaton", pulse, cells, stands)
+    assert thresholds.comes_down("automaton", pulse, cells, falls)
+
+
+@pytest.mark.parametrize("near", [1.37, 2.9])
+def test_threshold_is_found_wherever_the_coarser_grid_had_it(near):
+    tried = []
+
+    def falls(excess):
+        tried.append(excess)
+        return excess >= 1.377
+
+    assert thresholds._between(falls, near) == pytest.approx(1.377, abs=thresholds.KNOWN / 2)
+    assert len(tried) < (6 if near == 1.37 else 13)

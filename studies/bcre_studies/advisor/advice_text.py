@@ -18,9 +18,10 @@ from bcre_studies.advisor.pilot import with_model
 from bcre_studies.advisor.question import Question
 from bcre_studies.advisor.scene_text import scene_text
 from bcre_studies.advisor.widened import advise_with_reference
+from bcre_studies.advisor.without_layer import WithoutLayer
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.models.bcre import COARSEST
-from bcre_studies.models.registry import AUTOMATON, BCRE, CANDIDATES, SCHEMES
+from bcre_studies.models.registry import AUTOMATON, BCRE, CANDIDATES, QUASI_STATIC, SCHEMES
 from bcre_studies.running.place import Origin
 from bcre_studies.running.run import require_runnable
 from bcre_studies.system.files import replace_text, require_writable
@@ -104,6 +105,8 @@ def _lines(advice: Advice, scene: str, path: Path) -> Iterator[str]:
     if advice.closed is not None:
         form, error = advice.closed
         yield f"closed form:    {form.name}, error {_percent(error)}, at no cost: {form.formula}"
+    if advice.without_layer is not None:
+        yield from _without_layer(advice, advice.without_layer)
     if not advice.options:
         yield f"unresolved:     {advice.why}"
     else:
@@ -135,6 +138,19 @@ def _instead(advice: Advice, first: Advice) -> Iterator[str]:
         f"scene's cells of d = {scene.d:g} add to the automaton"
     )
     yield f"{'':16}all errors below are from BCRE with this kappa, and the advised scene has it"
+
+
+def _without_layer(advice: Advice, found: WithoutLayer) -> Iterator[str]:
+    """That no rolling layer is needed, the error and the cost of doing without."""
+    took = _time(found.seconds)
+    if advice.options:
+        took += f", {_short(advice.options[0].seconds / found.seconds)} times less than recommended"
+    yield (
+        f"no layer:       {QUASI_STATIC.text}, isotonic steps on {found.cells} cells: error "
+        f"{_percent(found.error)}, {took}"
+    )
+    yield f"{'':16}v/(gamma Sc l) = {found.eps:.2g} and R/(Sc l) = {found.tau:.2g} are small"
+    yield f"{'':16}run the scene as it was asked about with --model {QUASI_STATIC.name}"
 
 
 def _asked(question: Question) -> str:

@@ -30,8 +30,10 @@ from bcre_studies.advisor.pilot import (
     warm_up,
 )
 from bcre_studies.advisor.question import Question
+from bcre_studies.advisor.without_layer import WithoutLayer, without_layer
 from bcre_studies.models.bcre import problem_of
 from bcre_studies.models.registry import BCRE, CANDIDATES, SCHEMES
+from bcre_studies.scenes.scene import SceneError
 from bcre_studies.timing.costs import Costs, closures_of
 
 RESOLVED, USABLE = 0.1, 0.25
@@ -79,15 +81,17 @@ class Advice:
 
     ``options`` are the models that do what was asked for, the best one first; where there is none,
     ``why`` says for what reason. ``left_out`` gives the reason for each other
-    model; ``closed`` is a closed form that meets the request, with its error. ``needs_width`` says
-    that a scarp with kappa = 0 left the reference unresolved, and ``instead_of`` holds the advice
-    that ended so, where this one has another reference (``widened``).
+    model; ``closed`` is a closed form that meets the request, with its error, and ``without_layer``
+    the quasi-static limit where it does. ``needs_width`` says that a scarp with kappa = 0 left the
+    reference unresolved, and ``instead_of`` holds the advice that ended so, where this one has
+    another reference (``widened``).
     """
 
     question: Question
     options: tuple[Option, ...] = ()
     left_out: dict[str, str] = field(default_factory=dict)
     closed: tuple[ClosedForm, float] | None = None
+    without_layer: WithoutLayer | None = None
     reference_cells: int = 0
     reference_error: float = math.inf
     pilots_s: float = 0.0
@@ -119,6 +123,7 @@ def advise(question: Question, effort: Effort) -> Advice:
         options,
         left_out | reasons,
         _closed(question, against),
+        without_layer(question, against),
         against.run.x.size,
         against.error,
         allowance.spent,
@@ -165,6 +170,7 @@ def _piloted(
     for number, scheme in enumerate(SCHEMES, start=1):
         share = REFERENCE_SHARE + (1 - REFERENCE_SHARE) * number / len(SCHEMES)
         try:
+            CANDIDATES[scheme].adapter().require_admitted(question.scene)
             found.append(
                 candidate(
                     question.scene,
@@ -177,6 +183,8 @@ def _piloted(
                     share,
                 )
             )
+        except SceneError as failure:
+            left_out[scheme] = str(failure)
         except PilotError as failure:
             left_out[scheme] = f"could not be piloted: {failure}"
     return found, left_out

@@ -12,6 +12,7 @@ import math
 import statistics
 import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import bcre_pde
@@ -21,7 +22,7 @@ from bcre_studies.models.automaton import rule_of
 from bcre_studies.models.bcre import problem_of
 from bcre_studies.models.registry import BCRE, CANDIDATES, SCHEMES
 from bcre_studies.models.run import Run
-from bcre_studies.scenes.scene import Scene
+from bcre_studies.scenes.scene import Scene, SceneError
 from bcre_studies.timing.costs import Costs, closures_of
 
 COARSEST = 25
@@ -117,7 +118,8 @@ def run_model(
 
 def warm_up(scene: Scene, model: str) -> None:
     """Compile what a model needs, so that no pilot is timed with it."""
-    run_model(scene, model, [0.0, 1e-9 * scene.time.until], coarsest(scene))
+    with suppress(SceneError):  # what a model does not admit its pilots say
+        run_model(scene, model, [0.0, 1e-9 * scene.time.until], coarsest(scene))
 
 
 def coarsest(scene: Scene, finest: int = FINEST) -> int:

@@ -57,7 +57,9 @@ def growth_rate(t: tuple[float, float], R: tuple[float, float]) -> float:
     return (math.log(R[1] / R[0]) + math.log(t[1] / t[0]) / 2) / (t[1] - t[0])
 
 
-def reached_the_top(x: ArrayLike, u_start: ArrayLike, u_end: ArrayLike) -> bool:
+def reached_the_top(
+    x: ArrayLike, u_start: ArrayLike, u_end: ArrayLike, *, fallen: float = FALLEN
+) -> bool:
     """Mean fall of u over the top tenth > H0/2, H0 = u(top) - u(foot) at the start.
 
     An avalanche that runs to the top brings the whole slope down to the repose line through its
@@ -67,11 +69,12 @@ def reached_the_top(x: ArrayLike, u_start: ArrayLike, u_end: ArrayLike) -> bool:
     ----------
     x: cell centres, ascending downhill, shape (N,).
     u_start, u_end: height above the repose line at the start and now, lengths, shape (N,).
+    fallen: the part of H0, a half by default.
     """
     x, start, end = (np.asarray(values, dtype=float) for values in (x, u_start, u_end))
     top = x <= x[0] + TOP * (x[-1] - x[0])
     excess = float(start[0] - start[-1])
-    return excess > 0 and float(np.mean((start - end)[top])) > FALLEN * excess
+    return excess > 0 and float(np.mean((start - end)[top])) > fallen * excess
 
 
 def grows_uphill(run: Run, centre: float) -> bool:

@@ -5,7 +5,8 @@ measured in the same run: 7 additions a cell on data in the cache, and one pass 
 reads and writes h and R. The real-time budget is the finest grid on which a figure of the paper is
 played at 60 frames a second, its 600 frames equally far apart; on a plane the side of the largest
 square. A plane with sand rolling on every cell is set against NumPy, a pass over memory, two
-threads, BCRE's right-hand side, and py-pde's from expressions.
+threads, BCRE's right-hand side, and py-pde's from expressions. Figure 1 is timed in every model on
+equal cells, each with its longest stable step.
 
 ``make speed`` measures; what stands here is the record in ``reports/speed``, which names its
 machine. ``make reports`` measures the ratios of the machine at hand into ``reports/local``.
@@ -19,7 +20,15 @@ import pandas as pd
 
 from bcre_studies.comparison.claim import Claim, quality_check
 from bcre_studies.comparison.verdict import Verdict
-from bcre_studies.comparison.wording import sentences, when
+from bcre_studies.comparison.wording import joined, sentences, when
+from bcre_studies.models.registry import (
+    ARADIAN,
+    AUTOMATON,
+    BCRE,
+    HADELER_KUTTLER,
+    SLOPE_DRIVEN_AUTOMATON,
+    THICK_AUTOMATON,
+)
 from bcre_studies.performance.record.record import recorded
 from bcre_studies.reporting import style
 
@@ -45,7 +54,7 @@ WHY_BUSY = (
 def run() -> dict[str, pd.DataFrame]:
     """The recorded ratios, rates by size, budget and first use."""
     comparison = recorded("ratios")["ratios"]
-    others = recorded("sizes", "budget", "plane", "plane_budget", "first_use", "machine")
+    others = recorded("sizes", "budget", "models", "plane", "plane_budget", "first_use", "machine")
     return {"comparison": comparison, **others}
 
 
@@ -80,7 +89,33 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
         ),
         _plane_ratios(tables["plane"]),
         _interactive_plane(tables["plane_budget"]),
+        _models_claim(tables["models"]),
     ]
+
+
+def _models_claim(rows: pd.DataFrame) -> Claim:
+    """Every model on figure 1, and whether an automaton of two layers beats its equation."""
+    times = rows.pivot(index="cells", columns="model", values="seconds_per_time")
+    pairs = {
+        AUTOMATON: BCRE,
+        THICK_AUTOMATON: ARADIAN,
+        SLOPE_DRIVEN_AUTOMATON: HADELER_KUTTLER,
+    }
+    gains = {rule.text: times[model.text] / times[rule.text] for rule, model in pairs.items()}
+    faster = joined(
+        f"{name} {gain.min():.3g} to {gain.max():.3g} times" for name, gain in gains.items()
+    )
+    least = min(gain.min() for gain in gains.values())
+    finest = rows[rows["cells"] == rows["cells"].max()]
+    listed = "; ".join(f"{row.model} {row.seconds_per_time:.2g}" for row in finest.itertuples())
+    return Claim(
+        name="models on figure 1",
+        statement="On equal cells the automaton of each closure is faster than its model.",
+        verdict=Verdict.AGREE if least > 1 else Verdict.DISAGREE,
+        evidence=f"{faster} as fast as the model. Seconds per unit of time on "
+        f"{finest['cells'].iloc[0]} cells: {listed}",
+        tolerance="a ratio of 1; errors differ, see ``speed_error``",
+    )
 
 
 def _plane_ratios(rows: pd.DataFrame) -> Claim:

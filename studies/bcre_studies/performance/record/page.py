@@ -33,6 +33,13 @@ PARTS = {
         "Cells at 60 frames a second",
         "A scene is played from start to end in 600 frames.",
     ),
+    "models": (
+        "Every model on figure 1, on equal cells",
+        "Seconds of the solve per unit of simulated time, from the start of the scene to its end, "
+        "each model with its longest stable step. What is solved differs, and with it the number "
+        "of steps: height alone falls until it rests, the quasi-static limit takes one step. "
+        "Ratios are medians over the rounds, and the range over them.",
+    ),
     "plane": (
         "Ratios on a plane, each within one run",
         "Sand rolls on all cells. Median over the rounds, and the range over them; two "
@@ -59,8 +66,16 @@ PARTS = {
 
 
 def write(folder: Path, tables: record.Tables) -> None:
-    """The tables as CSV, a figure, a Markdown page and an HTML page."""
+    """Keep the tables as CSV, and show all that the folder then keeps.
+
+    Tables that are not given stay as they are, so that one can be renewed alone.
+    """
     record.write(tables, folder)
+    show(folder)
+
+
+def show(folder: Path) -> None:
+    """What a folder keeps, as a figure, a Markdown page and an HTML page."""
     kept = record.read(folder)
     local = folder == record.LOCAL
     contest = kept["contest"]

@@ -33,7 +33,14 @@ DIGITS = 3
 
 def measure_record() -> Tables:
     """Everything, some minutes: for a machine that does nothing else."""
-    from bcre_studies.performance.record import first_use, plane, ratios, sizes, specialisation
+    from bcre_studies.performance.record import (
+        first_use,
+        models,
+        plane,
+        ratios,
+        sizes,
+        specialisation,
+    )
     from bcre_studies.performance.record.advice_times import time_hits
     from bcre_studies.timing import costs
 
@@ -45,6 +52,7 @@ def measure_record() -> Tables:
         "ratios": ratios.measure(with_compiling=True),
         "sizes": sizes.measure(),
         "budget": sizes.budget(),
+        "models": models.measure(),
         "plane": plane.ratios(),
         "plane_budget": plane.budget(),
         "first_use": first_use.measure(),
