@@ -6,7 +6,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
 # The environment is this folder's own, whatever the user's settings for others are.
 export PIP_USER := 0
-unexport PIP_TARGET PIP_PREFIX PYTHONPATH PYTHONHOME
+unexport PIP_TARGET PIP_PREFIX PYTHONPATH PYTHONHOME PYTHONDONTWRITEBYTECODE
 
 # A moved or copied environment runs the code of where it was made, or nothing: it is made again.
 RUNS := $(BIN)/python -I -c 'from importlib.util import find_spec; print(find_spec("bcre_studies").origin)'

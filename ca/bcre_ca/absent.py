@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from numba.extending import register_jitable
+from bcre_ca.inner import inner
 
 
-@register_jitable
+@inner
 def plus(a: Any, b: Any) -> Any:
     """a + b; the other one where one is absent."""
     if a is None:
@@ -21,7 +21,7 @@ def plus(a: Any, b: Any) -> Any:
     return a + b
 
 
-@register_jitable
+@inner
 def minus(a: Any, b: Any) -> Any:
     """a - b, an absent term counting as 0; None where both are absent."""
     if b is None:
@@ -31,7 +31,7 @@ def minus(a: Any, b: Any) -> Any:
     return a - b
 
 
-@register_jitable
+@inner
 def times(a: Any, b: Any) -> Any:
     """a b; absent where ``a`` is."""
     if a is None:
@@ -39,7 +39,7 @@ def times(a: Any, b: Any) -> Any:
     return a * b
 
 
-@register_jitable
+@inner
 def over(a: Any, b: Any) -> Any:
     """a/b; absent where either is."""
     if a is None or b is None:
@@ -47,7 +47,7 @@ def over(a: Any, b: Any) -> Any:
     return a / b
 
 
-@register_jitable
+@inner
 def or_else(a: Any, default: float) -> Any:
     """``a``, or the default where it is absent."""
     if a is None:

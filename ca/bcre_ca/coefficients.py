@@ -10,9 +10,8 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from numba.extending import register_jitable
-
 from bcre_ca.absent import or_else, over, plus, times
+from bcre_ca.inner import inner
 from bcre_ca.schemes import (
     Calibrated,
     CompiledScheme,
@@ -79,7 +78,7 @@ def row_of(terms: Parameters | Coefficients) -> list[float]:
     return [0.0 if number is None else number for number in numbers]
 
 
-@register_jitable
+@inner
 def coefficients_in(row: Any, like: Coefficients) -> Coefficients:
     """What :func:`row_of` has made a row of; ``like`` says which terms are absent."""
     return Coefficients(
@@ -98,7 +97,7 @@ def coefficients_in(row: Any, like: Coefficients) -> Coefficients:
     )
 
 
-@register_jitable
+@inner
 def parameters_in(row: Any, scheme: CompiledScheme) -> Parameters:
     """What :func:`row_of` has made a row of, where no term is absent."""
     return Parameters(
@@ -106,14 +105,14 @@ def parameters_in(row: Any, scheme: CompiledScheme) -> Parameters:
     )
 
 
-@register_jitable
+@inner
 def _unless_absent(like: Any, value: float) -> Any:
     if like is None:
         return None
     return value
 
 
-@register_jitable
+@inner
 def fold(p: Parameters, dt: float) -> Coefficients:
     """The coefficients of a step dt.
 
@@ -139,7 +138,7 @@ def fold(p: Parameters, dt: float) -> Coefficients:
     )
 
 
-@register_jitable
+@inner
 def emptying_steps(leaving: Any, dry: Any) -> Any:
     """Steps in which a cell empties that loses the part ``leaving`` in each; 1 where none does."""
     if dry is None:
@@ -174,7 +173,7 @@ _scheme_of_step = by_scheme(
 )
 
 
-@register_jitable
+@inner
 def every_term(p: Parameters) -> Parameters:
     """The same rule with no term absent, for what need not be compiled for each choice of terms."""
     return Parameters(

@@ -15,15 +15,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from numba.extending import register_jitable
-
 from bcre_ca.absent import minus, plus, times
+from bcre_ca.inner import inner
 
 if TYPE_CHECKING:
     from bcre_ca.coefficients import Coefficients
 
 
-@register_jitable
+@inner
 def exchanging(R: Any, saturation: float | None) -> Any:
     """X(R), the part of the layer that exchanges; ``saturation`` is gamma/v_up."""
     if saturation is None:
@@ -31,7 +30,7 @@ def exchanging(R: Any, saturation: float | None) -> Any:
     return R / (1.0 + saturation * R)
 
 
-@register_jitable
+@inner
 def eroded(R: Any, drop: Any, bend: Any, K: Coefficients) -> Any:
     """dt E of cells with layer R.
 
@@ -46,32 +45,32 @@ def eroded(R: Any, drop: Any, bend: Any, K: Coefficients) -> Any:
     return X * plus(K.exchange * drop, times(minus(correction, K.curvature), bend))
 
 
-@register_jitable
+@inner
 def eroded_at_foot(R: Any, bend: Any, K: Coefficients) -> Any:
     """dt E of the last cell: the surface goes on at repose, so that only its curvature acts."""
     return exchanging(R, K.saturation) * minus(0.0, times(K.curvature, bend))
 
 
-@register_jitable
+@inner
 def carried(R: Any, R_next: Any, K: Coefficients) -> Any:
     """dt/d F, what leaves a cell of layer R for the next one downhill."""
     return _thickened(minus(K.outgoing * R, times(K.diffusion, R_next)), R, K.thickening)
 
 
-@register_jitable
+@inner
 def leaving(R: Any, K: Coefficients) -> Any:
     """dt/d F, what leaves the last cell through an open foot, beyond which R is the same."""
     return _thickened(K.courant * R, R, K.thickening)
 
 
-@register_jitable
+@inner
 def _thickened(flux: Any, R: Any, thickening: float | None) -> Any:
     if thickening is None:
         return flux
     return flux + thickening * (R * R)
 
 
-@register_jitable
+@inner
 def deposit_thin(
     h: Any, R: Any, R_before: Any, dry: float | None, emptying: float | None
 ) -> tuple[Any, Any]:

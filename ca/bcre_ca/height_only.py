@@ -19,7 +19,7 @@ SETTLED = 1e-9
 
 
 @kept
-def settled(h, fall, periodic, start=0.0):  # type: ignore[no-untyped-def]
+def settled(h, fall, periodic, start=0.0):
     """The height once no cell sheds more than :data:`SETTLED`, what left, and after how many steps.
 
     Parameters

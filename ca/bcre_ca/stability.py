@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from numba.extending import register_jitable
-
 from bcre_ca.absent import or_else, over, plus, times
 from bcre_ca.coefficients import Parameters
 from bcre_ca.exchange import exchanging
+from bcre_ca.inner import inner
 from bcre_ca.schemes import (
     Calibrated,
     CompiledScheme,
@@ -21,7 +20,7 @@ from bcre_ca.schemes import (
 )
 
 
-@register_jitable
+@inner
 def largest_step(p: Parameters, largest_R: float, sink: float) -> float:
     """Largest dt that keeps R >= 0 and the surface wave stable; see :mod:`bcre_ca.theory`.
 
@@ -88,13 +87,13 @@ _bound = by_scheme(
 )
 
 
-@register_jitable
+@inner
 def _step_of_quadratic(p: float, q: float) -> float:
     """Largest t with (p t)^2 + q t <= 1."""
     step: float = 2.0 * _inverse(q + math.sqrt(q * q + 4 * p * p))
     return step
 
 
-@register_jitable
+@inner
 def _inverse(rate: float) -> float:
     return 1.0 / rate if rate > 0 else math.inf

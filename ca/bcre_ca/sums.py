@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import numba
+from bcre_ca.inner import inner
 
 
-@numba.njit(error_model="numpy")
-def add(account, term):  # type: ignore[no-untyped-def]
+@inner
+def add(account, term):
     """Add ``term`` to account[0]; account[1] holds what rounding has taken from it (Kahan 1965).
 
     So the balance of mass holds to rounding after any number of steps.

@@ -13,12 +13,13 @@ instead of multiplying by zero.
 
 from __future__ import annotations
 
-import numba
-from numba.extending import register_jitable
+from typing import Any
+
+from bcre_pde.inner import inner
 
 
-@register_jitable  # plain Python too, for the stable step
-def exchanging(R, saturation):  # type: ignore[no-untyped-def]
+@inner
+def exchanging(R: Any, saturation: float | None) -> Any:
     """X(R), the part of the layer that exchanges; ``saturation`` is gamma/v_up or None."""
     wet = max(R, 0.0)
     if saturation is None:
@@ -26,8 +27,8 @@ def exchanging(R, saturation):  # type: ignore[no-untyped-def]
     return wet / (1.0 + saturation * wet)
 
 
-@numba.njit(error_model="numpy")
-def exchange(R, gradient, curvature, gamma, kappa, saturation):  # type: ignore[no-untyped-def]
+@inner
+def exchange(R, gradient, curvature, gamma, kappa, saturation):
     """E of one cell.
 
     Parameters

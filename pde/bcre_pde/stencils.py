@@ -12,22 +12,22 @@ from __future__ import annotations
 import numba
 
 from bcre_pde.exchange import exchange
+from bcre_pde.inner import inner
 
 GHOSTS = 3
 """Cells that the widest stencil reaches beyond its own."""
 
-_compiled = numba.njit(error_model="numpy")
 _inlined = numba.njit(error_model="numpy", inline="always")
 
 
 @_inlined
-def _between(one, other):  # type: ignore[no-untyped-def]
+def _between(one, other):
     """The one nearer to zero where signs agree, else zero (minmod)."""
     return max(min(one, other), 0.0) + min(max(one, other), 0.0)
 
 
 @_inlined
-def face_value(upwind_3, upwind_2, upwind, downwind, downwind_2):  # type: ignore[no-untyped-def]
+def face_value(upwind_3, upwind_2, upwind, downwind, downwind_2):
     """Value on the face between ``upwind`` and ``downwind`` from five cells in a row.
 
     The fifth-order value, moved into the interval that monotone data allow and that is widened at
@@ -53,8 +53,8 @@ def face_value(upwind_3, upwind_2, upwind, downwind, downwind_2):  # type: ignor
     return value + _between(lowest - value, highest - value)
 
 
-@_compiled
-def rolling_flux_at_open_ends(R, flux, v, D, dx, cells):  # type: ignore[no-untyped-def]
+@inner
+def rolling_flux_at_open_ends(R, flux, v, D, dx, cells):
     """F on the three faces next to either end, written into ``flux``, shape (cells + 1,)."""
     flux[0] = 0.0
     flux[1] = v * (R[0] + R[1]) / 2 - D * (R[1] - R[0]) / dx
@@ -65,20 +65,18 @@ def rolling_flux_at_open_ends(R, flux, v, D, dx, cells):  # type: ignore[no-unty
     flux[cells - 2] = v * carried - _fourth_order_spread(R, cells - 2, D, dx)
 
 
-@_compiled
-def _third_order_drift(R, face, v):  # type: ignore[no-untyped-def]
+@inner
+def _third_order_drift(R, face, v):
     return v * (2 * R[face] + 5 * R[face - 1] - R[face - 2]) / 6
 
 
-@_compiled
-def _fourth_order_spread(R, face, D, dx):  # type: ignore[no-untyped-def]
+@inner
+def _fourth_order_spread(R, face, D, dx):
     return D * (15 * (R[face] - R[face - 1]) - (R[face + 1] - R[face - 2])) / (12 * dx)
 
 
-@_compiled
-def change_at_open_ends(  # type: ignore[no-untyped-def]
-    u, R, flux, rates, gamma, kappa, dx, cells, foot, saturation
-):
+@inner
+def change_at_open_ends(u, R, flux, rates, gamma, kappa, dx, cells, foot, saturation):
     """Rates of u and R, rows 0 and 1 of ``rates``, in the three cells next to either end."""
     last = cells - 1
     per_gradient = gamma / dx
@@ -108,12 +106,12 @@ def change_at_open_ends(  # type: ignore[no-untyped-def]
         rates[1, i] = (flux[i] - flux[i + 1]) / dx + gained
 
 
-@_compiled
-def _third_order_gradient(u, i):  # type: ignore[no-untyped-def]
+@inner
+def _third_order_gradient(u, i):
     return (6 * u[i + 1] - 3 * u[i] - 2 * u[i - 1] - u[i + 2]) / 6
 
 
-@_compiled
-def curvature_on_foot(u, foot, dx, cells):  # type: ignore[no-untyped-def]
+@inner
+def curvature_on_foot(u, foot, dx, cells):
     """u_xx at x = cells dx of the cubic with u_x = 0 there through the last two cells."""
     return (108 * (u[cells - 1] - foot) - 4 * (u[cells - 2] - foot)) / (9 * dx**2)

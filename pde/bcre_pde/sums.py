@@ -6,7 +6,7 @@ from bcre_pde.kept import kept
 
 
 @kept()
-def weighted_sum(start, terms, weights, count, dt, out):  # type: ignore[no-untyped-def]
+def weighted_sum(start, terms, weights, count, dt, out):
     """out = start + the first ``count`` weights times terms; weights of zero are skipped.
 
     The last of these terms arrives as a rate, and is first multiplied by ``dt`` in place.

@@ -84,7 +84,7 @@ STUDIES = {
         "verification.hard_cases.study", "Hard cases: what happens, and who says so"
     ),
     "advice": Entry(
-        "performance.advice", "Does the advised model reach the tolerance, at the least cost?"
+        "performance.advice.study", "Does the advised model reach the tolerance, at the least cost?"
     ),
 }
 

@@ -129,7 +129,7 @@ def small_tiles():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(sweep, "TILE", 9)
         patch.setattr(sweep, "TILE_STEPS", 5)
-        tiled = numba.njit(error_model="numpy")(sweep._tiled.py_func)
+        tiled = numba.njit(error_model="numpy")(sweep._tiled)
         tiled(*rough(20), TILED.coefficients(), 1, np.zeros(2))
     return tiled
 

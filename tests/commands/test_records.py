@@ -11,9 +11,10 @@ from hatchling.builders.wheel import WheelBuilder
 import bcre_studies
 from bcre_studies import catalog
 from bcre_studies.advisor import advice_text
-from bcre_studies.performance import advice, scaling
+from bcre_studies.performance import scaling
 from bcre_studies.performance.record import specialisation
-from bcre_studies.performance.scene_needs import study as scene_needs
+from bcre_studies.performance.record.record import recorded as recorded_tables
+from bcre_studies.performance.scene_needs import claims as claims_of_needs
 from bcre_studies.publishing import write
 from bcre_studies.system import files, records, sources
 from bcre_studies.timing import costs
@@ -78,7 +79,7 @@ def test_installed_elsewhere_the_same_is_recorded(elsewhere):
 def test_no_verdict_changes_for_want_of_a_record(without):
     assert records.recorded("speed/*.csv") == []
     with pytest.raises(FileNotFoundError, match=r"speed/specialisation\.csv: missing"):
-        scene_needs._specialised_claim()
+        claims_of_needs._specialised_claim()
     with pytest.raises(FileNotFoundError, match=r"speed/costs\.csv: missing"):
         costs.recorded()
 
@@ -122,4 +123,4 @@ def test_record_of_the_place_goes_before_the_shipped_one(elsewhere, tmp_path):
     found = records.recorded("speed/*.csv")
     assert {path.name for path in found} == shipped
     assert [path.read_text() for path in found if path.name == "costs.csv"] == ["mine"]
-    assert advice.recorded_tables("advice")
+    assert recorded_tables("advice")

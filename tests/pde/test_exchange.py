@@ -9,7 +9,7 @@ from numba.core.runtime import _nrt_python, rtsys
 from bcre_pde import Material, exchange
 from bcre_pde.line import fluxes
 
-law = exchange.exchange.py_func
+law = exchange.exchange
 GAMMA, KAPPA, SATURATION = 0.7, 0.3, 1.75
 
 

@@ -20,7 +20,8 @@ from bcre_studies.advisor.scene_text import scene_text
 from bcre_studies.advisor.widened import advise_with_reference
 from bcre_studies.cli import app
 from bcre_studies.models.run import frame_times
-from bcre_studies.performance import advice as study
+from bcre_studies.performance.advice.drawn import random_rows
+from bcre_studies.performance.advice.truth import TOLERANCE, TRUTH
 from bcre_studies.performance.random_scenes import random_scene
 from bcre_studies.running.place import Origin
 from bcre_studies.running.run import run_scene
@@ -356,8 +357,8 @@ def test_the_command_says_that_nothing_can_be_advised_and_writes_nothing(tmp_pat
 
 @pytest.mark.parametrize("index", [1, 4])
 def test_random_scenes_are_judged_by_a_finer_solution(index):
-    rows, _ = study._random(index)
+    rows, _ = random_rows(index)
     assert [row["observable"] for row in rows] == ["R", "h"]
     for row in rows:
-        assert row["truth_error"] <= study.TRUTH * study.TOLERANCE
-        assert (row["result"] == "met") == (row["true_error"] <= study.TOLERANCE)
+        assert row["truth_error"] <= TRUTH * TOLERANCE
+        assert (row["result"] == "met") == (row["true_error"] <= TOLERANCE)

@@ -460,6 +460,15 @@ TURNS = [
         said=("outside: none",),
     ),
     Turn(
+        "order_of_accuracy",
+        "further models",
+        DISAGREE,
+        of(solution="Cole-Hopf wave", model="ca"),
+        {"verdict": "disagree", "order": 0.5},
+        said=("order 0.5",),
+        table="further_models",
+    ),
+    Turn(
         "speed_error",
         "efficiency at 10 %",
         DISAGREE,

@@ -9,7 +9,12 @@ import pytest
 import bcre_ca
 from bcre_pde import exact
 from bcre_studies.comparison.verdict import Verdict
-from bcre_studies.verification.order_of_accuracy import layers, observed, study
+from bcre_studies.verification.order_of_accuracy import (
+    further_models,
+    layers,
+    observed,
+    study,
+)
 from bcre_studies.verification.order_of_accuracy.claims import order_of
 from bcre_studies.verification.order_of_accuracy.expected import EXPECTED
 
@@ -241,7 +246,19 @@ def test_verdicts_of_the_claims_turn_with_one_bad_row():
             "order": [broken],
             "largest_at_x": [1.0],
         }
-        tables = {"comparison": pd.DataFrame(rows), "past_breaking": pd.DataFrame(past)}
+        further = {
+            "solution": ["c"],
+            "model": "ca",
+            "cells": 8,
+            "order": 1.0,
+            "error": 1e-5,
+            "verdict": "agree",
+        }
+        tables = {
+            "comparison": pd.DataFrame(rows),
+            "past_breaking": pd.DataFrame(past),
+            "further_models": pd.DataFrame(further),
+        }
         found = [claim.verdict for claim in study.judge(tables)]
         assert found[2:4] == [agree, agree]
         return [*found[:2], found[4]]
@@ -276,3 +293,41 @@ def test_claim_of_a_scheme_turns_with_one_bad_row_and_names_it():
     assert verdicts((1.0, 0.02), (2.3, 1e-4)) == [disagree, disagree]
     off = order_of("limited", pd.DataFrame([row("limited", 1.7, 1e-4)]))
     assert "a: 1.7" in off.evidence
+
+
+def further(solution, model):
+    """The number of a case of the further models."""
+    cases = further_models.CASES
+    return next(i for i, case in enumerate(cases) if case[:2] == (solution, model))
+
+
+@pytest.mark.parametrize(
+    ("solution", "model"),
+    [
+        ("exponential slope", "pde"),
+        ("Cole-Hopf wave", "ca"),
+        ("half heap", "quasi-static"),
+        ("undermining", "quasi-static"),
+    ],
+)
+def test_further_model_converges_to_its_own_exact_solution(solution, model):
+    assert further_models.observed(further(solution, model))["verdict"] == "agree"
+
+
+@pytest.mark.parametrize("spoilt", [lambda e: 0 * e + 1e-4, lambda e: 100 * e])
+def test_further_model_that_stalls_or_is_far_off_does_not_agree(monkeypatch, spoilt):
+    number = further("Cole-Hopf wave", "ca")
+    case = further_models.CASES[number]
+    cases = list(further_models.CASES)
+    cases[number] = case._replace(error=lambda cells: spoilt(case.error(cells)))
+    monkeypatch.setattr(further_models, "CASES", tuple(cases))
+    assert further_models.observed(number)["verdict"] == "disagree"
+
+
+def test_rule_of_another_speed_misses_the_cole_hopf_wave(monkeypatch):
+    march = further_models.upwind_height.march
+    monkeypatch.setattr(
+        further_models.upwind_height, "march", lambda w, lam, *rest: march(w, 1.02 * lam, *rest)
+    )
+    number = further("Cole-Hopf wave", "ca")
+    assert further_models.observed(number)["verdict"] == "disagree"

@@ -10,7 +10,7 @@ from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.models.automaton import rule_of
 from bcre_studies.models.registry import AUTOMATON
 from bcre_studies.observables import named as observables
-from bcre_studies.performance.scene_needs import ablation, smallest
+from bcre_studies.performance.scene_needs import ablation, claims, smallest
 from bcre_studies.performance.scene_needs import study as scene_needs
 from bcre_studies.performance.scene_needs.ablation import Model, Refused
 from bcre_studies.scenes.scene import load
@@ -146,7 +146,7 @@ def tables():
     """Made-up tables of one scene in which all is as it should be."""
     rows = [
         {"without": name, "runs": "yes", "slope": 0.5, "R": 0.5, "cost": 0.9}
-        for name in scene_needs.PHYSICAL
+        for name in claims.PHYSICAL
     ]
     rows += [
         {"without": name, "runs": "yes", "slope": 0.0, "R": 0.001, "cost": 0.5}

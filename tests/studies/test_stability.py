@@ -6,10 +6,9 @@ import pytest
 
 import bcre_ca
 from bcre_studies.comparison.verdict import Verdict
-from bcre_studies.verification.stability import amplification, growth
-from bcre_studies.verification.stability import study as stability
+from bcre_studies.verification.stability import amplification, beyond, boundaries, growth, study
 from bcre_studies.verification.stability.amplification import Numbers, rule_with, stable
-from bcre_studies.verification.stability.study import (
+from bcre_studies.verification.stability.diagram import (
     CLIMB_AND_DRIFT,
     DRIFT_AND_SPREAD,
     VARIANTS,
@@ -92,24 +91,24 @@ def test_a_thick_layer_shortens_the_step_of_a_sweep_downhill_only():
 
 
 def test_small_planes_are_measured_predicted_and_accepted_alike(monkeypatch):
-    monkeypatch.setattr(stability, "POINTS", 8)
-    monkeypatch.setattr(stability, "RAYS", 3)
-    row, rays, points = stability._measure(Diagram("ca", RIGHT, CLIMB_AND_DRIFT))
+    monkeypatch.setattr(boundaries, "POINTS", 8)
+    monkeypatch.setattr(boundaries, "RAYS", 3)
+    row, rays, points = boundaries.measure(Diagram("ca", RIGHT, CLIMB_AND_DRIFT))
     assert row["points"] == 64
     assert row["predicted_stable_but_grows"] == row["accepted_but_grows"] == 0
     assert row["distance_percent"] <= 2
     assert row["verdict"] == Verdict.AGREE
     assert sum(line["stable"].count("0") for line in points) == row["grow"] == row["refused"]
     assert all(ray["bound"] == pytest.approx(ray["predicted"], rel=0.01) for ray in rays)
-    row, _, _ = stability._measure(Diagram("pde", "DOP853", DRIFT_AND_SPREAD))
+    row, _, _ = boundaries.measure(Diagram("pde", "DOP853", DRIFT_AND_SPREAD))
     assert row["predicted_stable_but_grows"] > 0 == row["accepted_but_grows"]
     assert row["verdict"] == Verdict.DISAGREE
 
 
 @pytest.mark.parametrize("variant", VARIANTS)
 def test_no_layer_becomes_negative_within_the_bound(variant, monkeypatch):
-    monkeypatch.setattr(stability, "LAYER_CELLS", 5000)
-    row = stability._positivity(variant)
+    monkeypatch.setattr(beyond, "LAYER_CELLS", 5000)
+    row = beyond.positivity(variant)
     assert row["least_percent_of_bound"] >= 99.9
     assert row["verdict"] == Verdict.AGREE
     assert (row["most_percent_of_bound"] > 101) == (variant not in (UPWIND, CALIBRATED))
@@ -156,7 +155,7 @@ def made_up(**changes):
 
 def test_claims_fail_by_what_they_claim():
     def verdicts(**changes):
-        return [claim.verdict is Verdict.AGREE for claim in stability.judge(made_up(**changes))]
+        return [claim.verdict is Verdict.AGREE for claim in study.judge(made_up(**changes))]
 
     assert verdicts() == [True] * 6
     assert verdicts(distance_percent=2.1) == [False] + [True] * 5

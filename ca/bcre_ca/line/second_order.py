@@ -24,12 +24,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba.extending import overload, register_jitable
+from numba.extending import overload
 from numpy.typing import NDArray
 
 from bcre_ca.absent import minus, times
 from bcre_ca.coefficients import Coefficients
 from bcre_ca.exchange import deposit_thin, eroded
+from bcre_ca.inner import inner
 from bcre_ca.line.drops import drops
 
 Array = NDArray[np.float64]
@@ -69,7 +70,7 @@ def _differences(R: Array, periodic: bool) -> tuple[Array, Array]:
     return np.append(across, between), np.append(between, across)
 
 
-@register_jitable
+@inner
 def predicted(
     h: Any, R: Any, above: Any, below: Any, R_above: Any, R_below: Any, K: Coefficients
 ) -> tuple[Any, Any, Any, Any]:
@@ -82,13 +83,13 @@ def predicted(
     return h - 0.5 * change, R_mid, _within(R_mid + 0.5 * r, 2.0 * R), g
 
 
-@register_jitable
+@inner
 def face_flux(R_face: Any, rise: Any, K: Coefficients) -> Any:
     """dt/d F through a face with the layer R_face, across which R rises."""
     return minus(K.courant * R_face, times(K.diffusion, rise))
 
 
-@register_jitable
+@inner
 def corrected(
     h: Any, R: Any, R_mid: Any, flux_in: Any, flux_out: Any, drop: Any, bend: Any, K: Coefficients
 ) -> Any:
@@ -97,7 +98,7 @@ def corrected(
     return deposit_thin(h - change, R + ((flux_in - flux_out) + change), R, K.dry, K.emptying)
 
 
-@register_jitable
+@inner
 def limited_slope(a: Any, b: Any) -> Any:
     """Mean of two neighbouring differences, at most twice the smaller one, and 0 where their signs
     differ (monotonized central, van Leer 1977)."""
@@ -106,27 +107,27 @@ def limited_slope(a: Any, b: Any) -> Any:
     return rising + smaller(larger(2.0 * larger(a, b), mean), 0.0)
 
 
-@register_jitable
+@inner
 def _within(value: Any, highest: Any) -> Any:
     return larger(smaller(value, highest), 0.0)
 
 
-def _minimum(a, b):  # type: ignore[no-untyped-def]
+def _minimum(a, b):
     return np.minimum(a, b)
 
 
-def _maximum(a, b):  # type: ignore[no-untyped-def]
+def _maximum(a, b):
     return np.maximum(a, b)
 
 
 @overload(_minimum)
-def _minimum_of_cells(a, b):  # type: ignore[no-untyped-def]
+def _minimum_of_cells(a, b):
     # NumPy's own also looks for NaN, which costs a third of the speed.
     return lambda a, b: min(a, b)
 
 
 @overload(_maximum)
-def _maximum_of_cells(a, b):  # type: ignore[no-untyped-def]
+def _maximum_of_cells(a, b):
     return lambda a, b: max(a, b)
 
 

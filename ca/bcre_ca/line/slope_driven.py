@@ -20,17 +20,17 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from bcre_ca.coefficients import Coefficients
+from bcre_ca.inner import inner
 from bcre_ca.line.second_order import larger, smaller
 from bcre_ca.schemes import JOINED, OPEN
 
 Array = NDArray[np.float64]
 
 
-@register_jitable
+@inner
 def carried(R: Any, R_next: Any, fall: Any, d: float, K: Coefficients) -> Any:
     """dt/d F from a cell of layer R to the next one, which lies lower by ``fall``."""
     speed = K.courant * (fall / d)
@@ -38,7 +38,7 @@ def carried(R: Any, R_next: Any, fall: Any, d: float, K: Coefficients) -> Any:
     return driven + K.diffusion * (R - R_next)
 
 
-@register_jitable
+@inner
 def eroded(R: Any, fall_above: Any, fall_below: Any, K: Coefficients) -> Any:
     """dt E of a cell, into which the surface falls by the one and from which by the other."""
     steepest = larger(larger(fall_below, -fall_above), 0.0)

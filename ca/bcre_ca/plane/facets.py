@@ -17,9 +17,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from bcre_ca.inner import inner
 from bcre_ca.plane.coefficients import FLOWS, Coefficients
 from bcre_ca.plane.ghosts import around
 from bcre_ca.plane.law import changed, either, eroded, gate_between, gated, larger
@@ -44,7 +44,7 @@ NEIGHBOURS = ((-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 
 """In the order in which what they send is added."""
 
 
-@register_jitable
+@inner
 def dip(along: Any, diagonal: Any, gate: Any, half: Any, is_straight: bool) -> tuple[Any, Any, Any]:
     """Squared slope times d^2 of a facet, and the drops a and b along its dip.
 

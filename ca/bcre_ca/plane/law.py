@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 from numba import types
-from numba.extending import overload, register_jitable
+from numba.extending import overload
 
 from bcre_ca.exchange import deposit_thin, exchanging
+from bcre_ca.inner import inner
 from bcre_ca.plane.coefficients import Coefficients
 
 
@@ -23,7 +24,7 @@ def _least(a: Any, b: Any) -> Any:
 
 
 @overload(_least)
-def _least_of_cells(a, b):  # type: ignore[no-untyped-def]
+def _least_of_cells(a, b):
     # NumPy's own would also look for NaN, which costs a third of the speed.
     return lambda a, b: min(a, b)
 
@@ -33,7 +34,7 @@ def _larger(a: Any, b: Any) -> Any:
 
 
 @overload(_larger)
-def _larger_of_cells(a, b):  # type: ignore[no-untyped-def]
+def _larger_of_cells(a, b):
     return lambda a, b: max(a, b)
 
 
@@ -42,7 +43,7 @@ def _either(condition: Any, a: Any, b: Any) -> Any:
 
 
 @overload(_either)
-def _either_of_cells(condition, a, b):  # type: ignore[no-untyped-def]
+def _either_of_cells(condition, a, b):
     return lambda condition, a, b: a if condition else b
 
 
@@ -51,7 +52,7 @@ larger: Any = _larger
 either: Any = _either
 
 
-@register_jitable
+@inner
 def gated(flow: Any, gate: Any) -> Any:
     """A flux or a drop through a face: nothing at a wall."""
     if gate is None:
@@ -64,7 +65,7 @@ def _gate_between(free: Any, other: Any) -> Any:
 
 
 @overload(_gate_between)
-def _gate_between_cells(free, other):  # type: ignore[no-untyped-def]
+def _gate_between_cells(free, other):
     if isinstance(free, types.NoneType):
         return lambda free, other: None
     return lambda free, other: free * other
@@ -73,7 +74,7 @@ def _gate_between_cells(free, other):  # type: ignore[no-untyped-def]
 gate_between: Any = _gate_between
 
 
-@register_jitable
+@inner
 def eroded(R: Any, excess: Any, h: Any, base: Any, K: Coefficients) -> Any:
     """dt E of a cell whose surface drops by ``excess`` beyond repose; no more than lies there."""
     wanted = exchanging(R, K.saturation) * (K.exchange * excess)
@@ -82,7 +83,7 @@ def eroded(R: Any, excess: Any, h: Any, base: Any, K: Coefficients) -> Any:
     return least(wanted, h - base)
 
 
-@register_jitable
+@inner
 def changed(
     h: Any, R: Any, along: Any, across: Any, erosion: Any, K: Coefficients
 ) -> tuple[Any, Any]:

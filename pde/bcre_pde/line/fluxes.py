@@ -28,16 +28,14 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 from bcre_pde import stencils
 from bcre_pde.exchange import exchange, exchanging
+from bcre_pde.inner import inner
 from bcre_pde.kept import SOURCES, kept
 from bcre_pde.stencils import GHOSTS, face_value
 from bcre_pde.sums import weighted_sum
-
-_compiled = numba.njit(error_model="numpy")
 
 
 class Coefficients(NamedTuple):
@@ -54,8 +52,8 @@ class Coefficients(NamedTuple):
     wall: float | None = None
 
 
-@_compiled
-def _rate(state, out, padded, faces, K, supply):  # type: ignore[no-untyped-def]
+@inner
+def _rate(state, out, padded, faces, K, supply):
     """:func:`rate`, as it is compiled into its callers."""
     cells = state.shape[1]
     _pad(state, padded, K.wall, K.dx, cells)
@@ -75,8 +73,8 @@ def _rate(state, out, padded, faces, K, supply):  # type: ignore[no-untyped-def]
 # By the type of an argument, not of an attribute, the compiler leaves code out.
 
 
-@_compiled
-def _pad(state, padded, wall, dx, cells):  # type: ignore[no-untyped-def]
+@inner
+def _pad(state, padded, wall, dx, cells):
     """u and R with ghost cells: wrapped, or between a closed top and a wall at the foot."""
     for field in range(2):
         for i in range(cells):
@@ -96,16 +94,16 @@ def _pad(state, padded, wall, dx, cells):  # type: ignore[no-untyped-def]
 # Arrays are shifted by slicing, and loops start at 0: only so are they vectorised.
 
 
-@_compiled
-def _climbing_face(u, face, cells):  # type: ignore[no-untyped-def]
+@inner
+def _climbing_face(u, face, cells):
     """u on every face, as seen from downhill; u carries three ghost cells."""
     u1, u2, u3, u4, u5 = u[1:], u[2:], u[3:], u[4:], u[5:]
     for f in range(cells + 1):
         face[f] = face_value(u5[f], u4[f], u3[f], u2[f], u1[f])
 
 
-@_compiled
-def _flux(padded, flux, v, D, Gamma, dx, cells):  # type: ignore[no-untyped-def]
+@inner
+def _flux(padded, flux, v, D, Gamma, dx, cells):
     """F on every face; the third row of ``padded`` takes J of a thick layer."""
     if Gamma is None:
         _rolling_flux(padded[1], padded[1], flux, v, D, dx, cells)
@@ -116,8 +114,8 @@ def _flux(padded, flux, v, D, Gamma, dx, cells):  # type: ignore[no-untyped-def]
         _rolling_flux(R, J, flux, 1.0, D, dx, cells)
 
 
-@_compiled
-def _rolling_flux(R, J, flux, v, D, dx, cells):  # type: ignore[no-untyped-def]
+@inner
+def _rolling_flux(R, J, flux, v, D, dx, cells):
     """F = v J - D R_x on every face; R and J, which may be R, carry three ghost cells."""
     spread = None if D is None else D / (180 * dx)
     R0, R1, R2, R3, R4, R5 = R[0:], R[1:], R[2:], R[3:], R[4:], R[5:]
@@ -128,8 +126,8 @@ def _rolling_flux(R, J, flux, v, D, dx, cells):  # type: ignore[no-untyped-def]
         flux[f] = v * carried if spread is None else v * carried - spread * difference
 
 
-@_compiled
-def _close(R, padded, faces, v, D, Gamma, wall, dx, cells):  # type: ignore[no-untyped-def]
+@inner
+def _close(R, padded, faces, v, D, Gamma, wall, dx, cells):
     """F on the faces next to ends that are not joined, into faces[1]."""
     flux = faces[1]
     if wall is not None:
@@ -139,8 +137,8 @@ def _close(R, padded, faces, v, D, Gamma, wall, dx, cells):  # type: ignore[no-u
         _flux_at_open_ends(R, padded, flux, faces, v, spread, Gamma, dx, cells)
 
 
-@_compiled
-def _flux_at_open_ends(R, padded, flux, faces, v, D, Gamma, dx, cells):  # type: ignore[no-untyped-def]
+@inner
+def _flux_at_open_ends(R, padded, flux, faces, v, D, Gamma, dx, cells):
     if Gamma is None:
         stencils.rolling_flux_at_open_ends(R, flux, v, D, dx, cells)
     else:
@@ -151,10 +149,8 @@ def _flux_at_open_ends(R, padded, flux, faces, v, D, Gamma, dx, cells):  # type:
             flux[face] += spreading[face]
 
 
-@_compiled
-def _change(  # type: ignore[no-untyped-def]
-    u, R, u_face, flux, out, gamma, kappa, dx, cells, saturation
-):
+@inner
+def _change(u, R, u_face, flux, out, gamma, kappa, dx, cells, saturation):
     """Rates of u and R in every cell; u carries three ghost cells."""
     u0, u1, u2, u3, u4, u5, u6 = u[0:], u[1:], u[2:], u[3:], u[4:], u[5:], u[6:]
     u_face_out, flux_out = u_face[1:], flux[1:]
@@ -170,10 +166,8 @@ def _change(  # type: ignore[no-untyped-def]
         ends_rate[i] = 0.0
 
 
-@_compiled
-def _change_at_open_ends(  # type: ignore[no-untyped-def]
-    state, flux, out, gamma, kappa, dx, cells, saturation, wall
-):
+@inner
+def _change_at_open_ends(state, flux, out, gamma, kappa, dx, cells, saturation, wall):
     """Rates of u and R next to either open end, of u on the foot, and of the outflow."""
     if wall is not None:
         return
@@ -185,14 +179,14 @@ def _change_at_open_ends(  # type: ignore[no-untyped-def]
     out[2, cells - 1] = flux[cells] / (cells * dx)
 
 
-def entries(sources: str):  # type: ignore[no-untyped-def]
+def entries(sources: str):
     """The compiled right-hand side, and steps of fixed length taken with it.
 
     Both close over ``sources``, a part of the key of their machine code: see :mod:`bcre_pde.kept`.
     """
 
     @kept()
-    def rate(  # type: ignore[no-untyped-def]
+    def rate(
         state,
         out,
         padded,
@@ -228,7 +222,7 @@ def entries(sources: str):  # type: ignore[no-untyped-def]
         _rate(state, out, padded, faces, K, supply)
 
     @kept()
-    def march(  # type: ignore[no-untyped-def]
+    def march(
         state,
         dt,
         steps,

@@ -17,8 +17,7 @@ In u = h + Sc x, so that S = Sc - u_x,
 
 from __future__ import annotations
 
-import numba
-
+from bcre_pde.inner import inner
 from bcre_pde.kept import SOURCES, kept
 from bcre_pde.stencils import GHOSTS
 
@@ -26,11 +25,9 @@ JOINED, OPEN, WALLED = 0, 1, 2
 
 THIN = 0.1
 
-_compiled = numba.njit(error_model="numpy")
 
-
-@_compiled
-def _extend(row, cells, ends, rise, foot):  # type: ignore[no-untyped-def]
+@inner
+def _extend(row, cells, ends, rise, foot):
     """Ghosts of u: ``rise`` is Sc dx, ``foot`` is u on an open foot."""
     first, last = GHOSTS, GHOSTS + cells - 1
     for k in range(1, GHOSTS + 1):
@@ -44,8 +41,8 @@ def _extend(row, cells, ends, rise, foot):  # type: ignore[no-untyped-def]
             row[last + k] = foot
 
 
-@_compiled
-def _extend_layer(row, cells, ends, sign):  # type: ignore[no-untyped-def]
+@inner
+def _extend_layer(row, cells, ends, sign):
     """Ghosts of R (``sign`` 1) or J (-1): mirrored at closed ends, even beyond an open foot."""
     first, last = GHOSTS, GHOSTS + cells - 1
     for k in range(1, GHOSTS + 1):
@@ -56,15 +53,15 @@ def _extend_layer(row, cells, ends, sign):  # type: ignore[no-untyped-def]
             row[last + k] = sign * row[last + 1 - k] if ends == WALLED else row[last]
 
 
-@_compiled
-def _falls(u, f, rise):  # type: ignore[no-untyped-def]
+@inner
+def _falls(u, f, rise):
     """Whether the surface falls downhill on face f; u carries ghosts."""
     climb = 27 * (u[f + 3] - u[f + 2]) - (u[f + 4] - u[f + 1])
     return climb <= 24 * rise
 
 
-@_compiled
-def _part(R, f, cells, ends):  # type: ignore[no-untyped-def]
+@inner
+def _part(R, f, cells, ends):
     """Part of the fifth-order value on face f: 0 next to open ends and where R, with ghosts, thins
     out to THIN of itself, 1 where it stays above twice that."""
     if ends == OPEN and (f < GHOSTS or f > cells - GHOSTS):
@@ -76,14 +73,14 @@ def _part(R, f, cells, ends):  # type: ignore[no-untyped-def]
     return min(thinnest / (THIN * thickest) - 1.0, 1.0)
 
 
-@_compiled
-def _face_value(upwind_3, upwind_2, upwind, downwind, downwind_2, part):  # type: ignore[no-untyped-def]
+@inner
+def _face_value(upwind_3, upwind_2, upwind, downwind, downwind_2, part):
     beyond = 2 * upwind_3 - 13 * upwind_2 - 13 * upwind + 27 * downwind - 3 * downwind_2
     return upwind + part / 60 * beyond
 
 
-@_compiled
-def _seen_from_below(u, f, rise, part):  # type: ignore[no-untyped-def]
+@inner
+def _seen_from_below(u, f, rise, part):
     # Of a single cell h, not u, is carried to the face: on the two sides of a pit it is the same.
     level = 0.5 * (1.0 - part) * rise
     if _falls(u, f, rise):
@@ -91,8 +88,8 @@ def _seen_from_below(u, f, rise, part):  # type: ignore[no-untyped-def]
     return _face_value(u[f], u[f + 1], u[f + 2], u[f + 3], u[f + 4], part) + level
 
 
-@_compiled
-def _carried(J, f, part):  # type: ignore[no-untyped-def]
+@inner
+def _carried(J, f, part):
     """What moves to the right from the left of face f, and to the left from its right."""
     rightwards = _face_value(
         max(J[f], 0.0),
@@ -113,13 +110,11 @@ def _carried(J, f, part):  # type: ignore[no-untyped-def]
     return rightwards + leftwards
 
 
-def entry(sources: str):  # type: ignore[no-untyped-def]
+def entry(sources: str):
     """The compiled right-hand side; ``sources`` is a part of the key of its machine code."""
 
     @kept()
-    def rate(  # type: ignore[no-untyped-def]
-        state, out, padded, faces, supply, beta, gamma, Sc, D, dx, ends
-    ):
+    def rate(state, out, padded, faces, supply, beta, gamma, Sc, D, dx, ends):
         """Write the time derivative of ``state`` into ``out``.
 
         Parameters

@@ -20,12 +20,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 from pde import CartesianGrid, FieldCollection, SDEBase
 
 from bcre_pde.advance import advance_with_noise
 from bcre_pde.gate import is_finite, require_not_negative
+from bcre_pde.inner import inner
 from bcre_pde.kept import SOURCES, kept
 from bcre_pde.line.marched import MarchedOnLine
 from bcre_pde.problem import Array, Problem
@@ -106,11 +106,8 @@ class HwaKardar(MarchedOnLine, SDEBase):  # type: ignore[misc]
         return 2.78 / bound if bound > 0 else math.inf
 
 
-_compiled = numba.njit(error_model="numpy")
-
-
-@_compiled
-def _extend(row, cells, periodic, walled):  # type: ignore[no-untyped-def]
+@inner
+def _extend(row, cells, periodic, walled):
     first, last = GHOSTS, GHOSTS + cells - 1
     for k in range(1, GHOSTS + 1):
         if periodic:
@@ -120,13 +117,11 @@ def _extend(row, cells, periodic, walled):  # type: ignore[no-untyped-def]
             row[last + k] = row[last + 1 - k] if walled else row[last]
 
 
-def entry(sources: str):  # type: ignore[no-untyped-def]
+def entry(sources: str):
     """The compiled right-hand side; ``sources`` is a part of the key of its machine code."""
 
     @kept()
-    def rate(  # type: ignore[no-untyped-def]
-        state, out, padded, flux, supply, nu, lam, level, dx, closed, periodic
-    ):
+    def rate(state, out, padded, flux, supply, nu, lam, level, dx, closed, periodic):
         """Write the time derivative of ``state`` into ``out``.
 
         Parameters

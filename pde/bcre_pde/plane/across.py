@@ -9,16 +9,13 @@ adds nothing, to the bit.
 
 from __future__ import annotations
 
-import numba
-
 from bcre_pde.exchange import exchanging
+from bcre_pde.inner import inner
 from bcre_pde.stencils import GHOSTS
 
-_compiled = numba.njit(error_model="numpy")
 
-
-@_compiled
-def add_rates(u, R, K, padded, scratch, u_rate, R_rate):  # type: ignore[no-untyped-def]
+@inner
+def add_rates(u, R, K, padded, scratch, u_rate, R_rate):
     """Add what happens across to the rates of one row.
 
     ``padded`` and ``scratch`` are longer than the row by 6 and by 1.
@@ -29,15 +26,15 @@ def add_rates(u, R, K, padded, scratch, u_rate, R_rate):  # type: ignore[no-unty
     _add(K.kappa_y, 1.0, scratch, R_rate)
 
 
-@_compiled
-def add_rise_of_foot(foot, R, K, padded, scratch, foot_rate):  # type: ignore[no-untyped-def]
+@inner
+def add_rise_of_foot(foot, R, K, padded, scratch, foot_rate):
     """u on the open foot, which is a boundary value, follows its curvature across too."""
     _bend(foot, R, K.kappa_y, K.saturation, K.dy, K.joined_sides, padded, scratch)
     _add(K.kappa_y, -1.0, scratch, foot_rate)
 
 
-@_compiled
-def _pad(row, padded, joined):  # type: ignore[no-untyped-def]
+@inner
+def _pad(row, padded, joined):
     m = row.size
     for j in range(m):
         padded[j + GHOSTS] = row[j]
@@ -46,8 +43,8 @@ def _pad(row, padded, joined):  # type: ignore[no-untyped-def]
         padded[m + GHOSTS + ghost] = row[ghost] if joined else row[m - 1 - ghost]
 
 
-@_compiled
-def _spread(R, D, dy, joined, padded, flux, R_rate):  # type: ignore[no-untyped-def]
+@inner
+def _spread(R, D, dy, joined, padded, flux, R_rate):
     if D == 0.0:
         return
     _pad(R, padded, joined)
@@ -62,8 +59,8 @@ def _spread(R, D, dy, joined, padded, flux, R_rate):  # type: ignore[no-untyped-
         R_rate[j] += (flux[j] - beyond[j]) / dy
 
 
-@_compiled
-def _bend(u, R, kappa, saturation, dy, joined, padded, gained):  # type: ignore[no-untyped-def]
+@inner
+def _bend(u, R, kappa, saturation, dy, joined, padded, gained):
     if kappa is None:
         return
     _pad(u, padded, joined)
@@ -78,8 +75,8 @@ def _bend(u, R, kappa, saturation, dy, joined, padded, gained):  # type: ignore[
         gained[j] = -exchanging(R[j], saturation) * curvature
 
 
-@_compiled
-def _add(kappa, sign, gained, rate):  # type: ignore[no-untyped-def]
+@inner
+def _add(kappa, sign, gained, rate):
     if kappa is None:
         return
     for j in range(rate.size):

@@ -9,18 +9,16 @@ those whose stencils would are left to :func:`rates_at_open_ends`.
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 
 from bcre_pde import stencils
 from bcre_pde.exchange import exchange, exchanging
+from bcre_pde.inner import inner
 from bcre_pde.stencils import face_value
 
-_compiled = numba.njit(error_model="numpy")
 
-
-@_compiled
-def faces(u, R, f, K, flux, face):  # type: ignore[no-untyped-def]
+@inner
+def faces(u, R, f, K, flux, face):
     """F and u on the faces between rows f - 1 and f, u as seen from downhill."""
     _rolling_fluxes(R, f, K.v, K.D_x, K.dx, flux)
     n = u.shape[0]
@@ -30,8 +28,8 @@ def faces(u, R, f, K, flux, face):  # type: ignore[no-untyped-def]
         face[j] = face_value(u5[j], u4[j], u3[j], u2[j], u1[j])
 
 
-@_compiled
-def _rolling_fluxes(R, f, v, D, dx, flux):  # type: ignore[no-untyped-def]
+@inner
+def _rolling_fluxes(R, f, v, D, dx, flux):
     n = R.shape[0]
     spread = D / (180 * dx)
     R0, R1, R2, R3 = R[f - 3], R[f - 2], R[f - 1], R[f % n]
@@ -42,8 +40,8 @@ def _rolling_fluxes(R, f, v, D, dx, flux):  # type: ignore[no-untyped-def]
         flux[j] = v * carried - spread * difference
 
 
-@_compiled
-def change(layers, i, flux, face, K, bend, rates):  # type: ignore[no-untyped-def]
+@inner
+def change(layers, i, flux, face, K, bend, rates):
     """Rates of u and R in row i; its upper faces in the rows i % 2 of ``flux`` and ``face``."""
     u, R = layers[0], layers[1]
     above, below = i % 2, (i + 1) % 2
@@ -64,8 +62,8 @@ def change(layers, i, flux, face, K, bend, rates):  # type: ignore[no-untyped-de
     )
 
 
-@_compiled
-def _bends(u, i, kappa, bend):  # type: ignore[no-untyped-def]
+@inner
+def _bends(u, i, kappa, bend):
     """180 dx^2 u_xx in row i, where it is needed."""
     if kappa is None:
         return
@@ -77,10 +75,8 @@ def _bends(u, i, kappa, bend):  # type: ignore[no-untyped-def]
         bend[j] = outer + 270 * (u2[j] + u4[j]) - 490 * u3[j]
 
 
-@_compiled
-def _change(  # type: ignore[no-untyped-def]
-    R, above, below, u_above, u_below, bend, gamma, kappa, saturation, dx, u_rate, R_rate
-):
+@inner
+def _change(R, above, below, u_above, u_below, bend, gamma, kappa, saturation, dx, u_rate, R_rate):
     slope = gamma / dx
     curve = None if kappa is None else kappa / (180 * dx * dx)
     for j in range(R.size):
@@ -89,8 +85,8 @@ def _change(  # type: ignore[no-untyped-def]
         R_rate[j] = (above[j] - below[j]) / dx + gained
 
 
-@_compiled
-def rates_at_open_ends(layers, K, rates):  # type: ignore[no-untyped-def]
+@inner
+def rates_at_open_ends(layers, K, rates):
     """Rates of the three rows next to each open end, of u on the foot and of the outflow."""
     n, columns = layers.shape[1], layers.shape[2]
     flux, inner = np.empty(n + 1), np.empty((2, columns))
@@ -107,8 +103,8 @@ def rates_at_open_ends(layers, K, rates):  # type: ignore[no-untyped-def]
         rates[2, n - 1, j] = flux[n] / (n * K.dx)
 
 
-@_compiled
-def _rise_of_foot(u, R, foot, kappa, saturation, dx, n):  # type: ignore[no-untyped-def]
+@inner
+def _rise_of_foot(u, R, foot, kappa, saturation, dx, n):
     if kappa is None:
         return 0.0
     return kappa * exchanging(R[n - 1], saturation) * stencils.curvature_on_foot(u, foot, dx, n)

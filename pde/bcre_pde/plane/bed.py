@@ -10,11 +10,11 @@ converge as it stands, hence the grain, which tends to it as grain/thickness ten
 
 from __future__ import annotations
 
-import numba
+from bcre_pde.inner import inner
 
 
-@numba.njit(error_model="numpy")
-def limit(u, base, grain, u_rate, R_rate):  # type: ignore[no-untyped-def]
+@inner
+def limit(u, base, grain, u_rate, R_rate):
     """Lower what one row erodes to what is there; ``base`` as a height above the repose plane."""
     for j in range(u.size):
         share = min(max((u[j] - base[j]) / grain, 0.0), 1.0)

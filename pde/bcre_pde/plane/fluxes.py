@@ -20,11 +20,10 @@ from typing import NamedTuple
 import numba
 import numpy as np
 
+from bcre_pde.inner import inner
 from bcre_pde.kept import SOURCES, kept
 from bcre_pde.plane import across, along, bed
 from bcre_pde.stencils import GHOSTS
-
-_compiled = numba.njit(error_model="numpy")
 
 
 class Coefficients(NamedTuple):
@@ -47,8 +46,8 @@ class Coefficients(NamedTuple):
     grain: float
 
 
-@_compiled
-def _inner(layers, rates, base, K, block, blocks):  # type: ignore[no-untyped-def]
+@inner
+def _inner(layers, rates, base, K, block, blocks):
     """Rates of a block of the rows whose stencils stay inside or wrap."""
     rows, columns = layers.shape[1:]
     top = 0 if K.joined_ends else GHOSTS
@@ -67,14 +66,14 @@ def _inner(layers, rates, base, K, block, blocks):  # type: ignore[no-untyped-de
         _limit(base, i, layers, rates, K)
 
 
-@_compiled
-def _limit(base, i, layers, rates, K):  # type: ignore[no-untyped-def]
+@inner
+def _limit(base, i, layers, rates, K):
     if base is not None:
         bed.limit(layers[0, i], base[i], K.grain, rates[0, i], rates[1, i])
 
 
-@_compiled
-def _open_ends(layers, rates, base, K):  # type: ignore[no-untyped-def]
+@inner
+def _open_ends(layers, rates, base, K):
     rows, columns = layers.shape[1:]
     padded, scratch = np.empty(columns + 2 * GHOSTS), np.empty(columns + 1)
     u, R, foot = layers[0], layers[1], layers[2, 0]
@@ -86,14 +85,14 @@ def _open_ends(layers, rates, base, K):  # type: ignore[no-untyped-def]
     across.add_rise_of_foot(foot, R[rows - 1], K, padded, scratch, rates[2, 0])
 
 
-def entries(sources: str):  # type: ignore[no-untyped-def]
+def entries(sources: str):
     """The compiled right-hand sides, on one thread and on several.
 
     ``sources`` is part of the key of their machine code on disk: see :mod:`bcre_pde.kept`.
     """
 
     @kept()
-    def rate(layers, rates, base, K):  # type: ignore[no-untyped-def]
+    def rate(layers, rates, base, K):
         """Write the time derivative of ``layers`` into ``rates``.
 
         Parameters
@@ -110,7 +109,7 @@ def entries(sources: str):  # type: ignore[no-untyped-def]
             _open_ends(layers, rates, base, K)
 
     @kept(parallel=True)
-    def rate_on_threads(layers, rates, base, K, threads):  # type: ignore[no-untyped-def]
+    def rate_on_threads(layers, rates, base, K, threads):
         """The same numbers on at most ``threads`` threads."""
         sources  # noqa: B018
         for block in numba.prange(threads):

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numba
 
+from bcre_pde.inner import inner
 from bcre_pde.kept import kept
 
 
-@numba.njit(error_model="numpy")
-def _sum_of_row(start, terms, field, i, weights, count, dt, out):  # type: ignore[no-untyped-def]
+@inner
+def _sum_of_row(start, terms, field, i, weights, count, dt, out):
     sum_, first = out[field, i], start[field, i]
     for j in range(sum_.size):
         sum_[j] = first[j]
@@ -22,10 +23,8 @@ def _sum_of_row(start, terms, field, i, weights, count, dt, out):  # type: ignor
                 sum_[j] += weight * term[j]
 
 
-@numba.njit(error_model="numpy")
-def _sum_of_rows(  # type: ignore[no-untyped-def]
-    start, terms, weights, count, dt, out, first, last
-):
+@inner
+def _sum_of_rows(start, terms, weights, count, dt, out, first, last):
     """The third field's rows between its first and last are zero and stay so."""
     rows = out.shape[1]
     for i in range(first, last):
@@ -36,15 +35,13 @@ def _sum_of_rows(  # type: ignore[no-untyped-def]
 
 
 @kept()
-def weighted_sum(start, terms, weights, count, dt, out):  # type: ignore[no-untyped-def]
+def weighted_sum(start, terms, weights, count, dt, out):
     """What :func:`bcre_pde.sums.weighted_sum` does, for fields of shape (3, rows, columns)."""
     _sum_of_rows(start, terms, weights, count, dt, out, 0, out.shape[1])
 
 
 @kept(parallel=True)
-def weighted_sum_on_threads(  # type: ignore[no-untyped-def]
-    start, terms, weights, count, dt, out, threads
-):
+def weighted_sum_on_threads(start, terms, weights, count, dt, out, threads):
     """The same numbers on at most ``threads`` threads."""
     rows = out.shape[1]
     for block in numba.prange(threads):

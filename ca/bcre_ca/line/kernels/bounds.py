@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
-from numba.extending import register_jitable
 
 from bcre_ca.coefficients import parameters_in
+from bcre_ca.inner import inner
 from bcre_ca.line.kernels import container
 from bcre_ca.rule import ROUNDING
 from bcre_ca.schemes import InContainer, SlopeDriven, by_scheme
@@ -17,20 +16,20 @@ from bcre_ca.stability import largest_step
 INFINITE = np.float64(np.inf).view(np.int64)
 
 
-@numba.njit(error_model="numpy")
-def _bits(number):  # type: ignore[no-untyped-def]
+@inner
+def _bits(number):
     """Numbers >= 0 are ordered as the integers with the same bits, and a largest integer is found
     several at a time, which a largest float is not."""
     return np.float64(number).view(np.int64)
 
 
-@numba.njit(error_model="numpy")
-def _number(bits):  # type: ignore[no-untyped-def]
+@inner
+def _number(bits):
     return np.int64(bits).view(np.float64)
 
 
-@numba.njit(error_model="numpy")
-def _extremes(h, R, repose_drop):  # type: ignore[no-untyped-def]
+@inner
+def _extremes(h, R, repose_drop):
     """Largest R and largest shortfall of a drop, both >= 0; NaN where a layer is not finite, or R
     is negative, which no stable step makes it.
 
@@ -52,8 +51,8 @@ def _extremes(h, R, repose_drop):  # type: ignore[no-untyped-def]
     return _number(largest), _number(shortfall)
 
 
-@numba.njit(error_model="numpy")
-def _largest_bend(h, kappa):  # type: ignore[no-untyped-def]
+@inner
+def _largest_bend(h, kappa):
     """Largest h(i-1) - 2 h(i) + h(i+1), or 0; looked for only where it counts."""
     if kappa == 0:
         return 0.0
@@ -64,8 +63,8 @@ def _largest_bend(h, kappa):  # type: ignore[no-untyped-def]
     return _number(largest)
 
 
-@numba.njit(error_model="numpy")
-def limits(h, R, p, period_drop, foot):  # type: ignore[no-untyped-def]
+@inner
+def limits(h, R, p, period_drop, foot):
     """Largest layer and fastest loss per unit of layer, as :func:`largest_step` takes them.
 
     NaN where the layers are not finite or R is negative. p holds every term. ``foot`` says whether
@@ -89,7 +88,7 @@ def limits(h, R, p, period_drop, foot):  # type: ignore[no-untyped-def]
     return largest, sink
 
 
-def _limits_within(h, R, p, period_drop, a, b, whole, scheme):  # type: ignore[no-untyped-def]
+def _limits_within(h, R, p, period_drop, a, b, whole, scheme):
     if period_drop is None:
         return limits(h[a:b], R[a:b], p, None, b == h.size)
     if whole:
@@ -97,12 +96,12 @@ def _limits_within(h, R, p, period_drop, a, b, whole, scheme):  # type: ignore[n
     return limits(h[a:b], R[a:b], p, None, False)
 
 
-def _limits_in_container(h, R, p, period_drop, a, b, whole, scheme):  # type: ignore[no-untyped-def]
+def _limits_in_container(h, R, p, period_drop, a, b, whole, scheme):
     largest, sink = limits(h, R, p, period_drop, True)
     return largest, max(sink, container.sink_at_wall(h, p))
 
 
-def _limits_slope_driven(h, R, p, period_drop, a, b, whole, scheme):  # type: ignore[no-untyped-def]
+def _limits_slope_driven(h, R, p, period_drop, a, b, whole, scheme):
     largest, _ = limits(h, R, p, None, True)
     return largest, container.sink_on_slopes(h, p)
 
@@ -112,21 +111,21 @@ _limits = by_scheme(
 )
 
 
-@numba.njit(error_model="numpy")
-def limits_within(h, R, p, period_drop, a, b, whole):  # type: ignore[no-untyped-def]
+@inner
+def limits_within(h, R, p, period_drop, a, b, whole):
     """The same for the cells [a, b) of a pile, or the whole of it."""
     return _limits(h, R, p, period_drop, a, b, whole, p.scheme)
 
 
-@numba.njit(error_model="numpy")
-def stable_step(p, largest, sink):  # type: ignore[no-untyped-def]
+@inner
+def stable_step(p, largest, sink):
     """The largest stable step under such limits; NaN where they are."""
     if math.isnan(largest):
         return math.nan
     return largest_step(p, largest, sink)
 
 
-def stable_steps(h, R, piles, rows, scheme, largest, period_drops):  # type: ignore[no-untyped-def]
+def stable_steps(h, R, piles, rows, scheme, largest, period_drops):
     """Fill in the largest stable steps of some of many piles, by their rows of parameters.
 
     Compiled by :func:`bcre_ca.kept.kept`.
@@ -139,8 +138,8 @@ def stable_steps(h, R, piles, rows, scheme, largest, period_drops):  # type: ign
         largest[j] = stable_step(p, layer, sink)
 
 
-@register_jitable
-def drop_of(period_drops, j):  # type: ignore[no-untyped-def]
+@inner
+def drop_of(period_drops, j):
     """One of the falls of the repose line over a period; None for open ends."""
     if period_drops is None:
         return None

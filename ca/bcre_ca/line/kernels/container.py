@@ -6,10 +6,10 @@ crosses each face is found first, then every cell changes.
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 
 from bcre_ca.exchange import carried, deposit_thin, eroded, leaving
+from bcre_ca.inner import inner
 from bcre_ca.line import slope_driven as law
 from bcre_ca.schemes import JOINED, WALLED
 from bcre_ca.sums import add
@@ -19,8 +19,8 @@ LEAST = 2.5
 on a slope that is all but level."""
 
 
-@numba.njit(error_model="numpy")
-def upwind(h, R, K, steps, account):  # type: ignore[no-untyped-def]
+@inner
+def upwind(h, R, K, steps, account):
     """``steps`` steps of the upwind rule."""
     cells = h.size
     flux, drop = np.zeros(cells + 1), np.zeros(cells + 1)
@@ -45,8 +45,8 @@ def upwind(h, R, K, steps, account):  # type: ignore[no-untyped-def]
         add(account, flux[cells] - flux[0])
 
 
-@numba.njit(error_model="numpy")
-def slope_driven(h, R, K, steps, account):  # type: ignore[no-untyped-def]
+@inner
+def slope_driven(h, R, K, steps, account):
     """``steps`` steps of the rule whose layer is driven by the slope."""
     cells, d = h.size, K.scheme.d
     flux, fall = np.zeros(cells + 1), np.zeros(cells + 1)
@@ -71,8 +71,8 @@ def slope_driven(h, R, K, steps, account):  # type: ignore[no-untyped-def]
         add(account, flux[cells] - flux[0])
 
 
-@numba.njit(error_model="numpy")
-def sink_at_wall(h, p):  # type: ignore[no-untyped-def]
+@inner
+def sink_at_wall(h, p):
     """Loss per unit of layer in the cell at a wall, against which the surface is level; or 0."""
     if p.scheme.ends != WALLED:
         return 0.0
@@ -80,8 +80,8 @@ def sink_at_wall(h, p):  # type: ignore[no-untyped-def]
     return p.gamma * max(p.repose_slope, 0.0) + p.kappa * bend / p.d**2
 
 
-@numba.njit(error_model="numpy")
-def sink_on_slopes(h, p):  # type: ignore[no-untyped-def]
+@inner
+def sink_on_slopes(h, p):
     """gamma Sc + (beta/d) S: fastest loss per unit of layer, S no less than LEAST Sc.
 
     S is the sum of what a cell falls to both sides, which only a ridge does.

@@ -10,9 +10,8 @@ ends: where it would, and in the in-place readings, the whole pile is stepped.
 
 from __future__ import annotations
 
-import numba
-
 from bcre_ca.coefficients import coefficients_in, parameters_in
+from bcre_ca.inner import inner
 from bcre_ca.line.kernels import container, frozen, in_place, second_order, sweep
 from bcre_ca.line.kernels.bounds import drop_of, limits_within, stable_step
 from bcre_ca.rule import ROUNDING
@@ -25,29 +24,29 @@ REACH = 2
 """Cells that a step reads beyond a wet one."""
 
 
-def _upwind_steps(h, R, K, steps, account, period_drop, scheme):  # type: ignore[no-untyped-def]
+def _upwind_steps(h, R, K, steps, account, period_drop, scheme):
     if period_drop is None:
         sweep.open_ends(h, R, K, steps, account)
     else:
         sweep.periodic(h, R, K, steps, period_drop)
 
 
-def _limited_steps(h, R, K, steps, account, period_drop, scheme):  # type: ignore[no-untyped-def]
+def _limited_steps(h, R, K, steps, account, period_drop, scheme):
     if period_drop is None:
         second_order.open_ends(h, R, K, steps, account)
     else:
         second_order.periodic(h, R, K, steps, period_drop)
 
 
-def _in_place_steps(h, R, K, steps, account, period_drop, scheme):  # type: ignore[no-untyped-def]
+def _in_place_steps(h, R, K, steps, account, period_drop, scheme):
     in_place.sweep(h, R, K, steps, account, period_drop)
 
 
-def _steps_in_container(h, R, K, steps, account, period_drop, scheme):  # type: ignore[no-untyped-def]
+def _steps_in_container(h, R, K, steps, account, period_drop, scheme):
     container.upwind(h, R, K, steps, account)
 
 
-def _slope_driven_steps(h, R, K, steps, account, period_drop, scheme):  # type: ignore[no-untyped-def]
+def _slope_driven_steps(h, R, K, steps, account, period_drop, scheme):
     container.slope_driven(h, R, K, steps, account)
 
 
@@ -65,8 +64,8 @@ WHOLE = (InPlace, InContainer, SlopeDriven)
 _steps_whole = by_scheme(lambda scheme: False, dict.fromkeys(WHOLE, lambda scheme: True))
 
 
-@numba.njit(error_model="numpy")
-def wet_cells(R, low, high):  # type: ignore[no-untyped-def]
+@inner
+def wet_cells(R, low, high):
     """First cell of [low, high) with R other than 0, and the cell after the last one."""
     while low < high and R[low] == 0:
         low += 1
@@ -75,7 +74,7 @@ def wet_cells(R, low, high):  # type: ignore[no-untyped-def]
     return low, high
 
 
-def _wet_or_poured_on(R, low, high, scheme):  # type: ignore[no-untyped-def]
+def _wet_or_poured_on(R, low, high, scheme):
     if scheme.supply.any():
         return low, high
     return wet_cells(R, low, high)
@@ -88,8 +87,8 @@ moving_cells = by_scheme(
 """The wet cells of [low, high), and all of them where sources pour."""
 
 
-@numba.njit(error_model="numpy")
-def window(size, low, high, period_drop, scheme):  # type: ignore[no-untyped-def]
+@inner
+def window(size, low, high, period_drop, scheme):
     """Cells [a, b) that a block can read or change, and whether that is the whole pile."""
     a, b = low - BLOCK - REACH, high + BLOCK + REACH
     if _steps_whole(scheme):
@@ -99,8 +98,8 @@ def window(size, low, high, period_drop, scheme):  # type: ignore[no-untyped-def
     return max(a, 0), min(b, size), False
 
 
-@numba.njit(error_model="numpy")
-def take(h, R, K, steps, account, period_drop, a, b, whole):  # type: ignore[no-untyped-def]
+@inner
+def take(h, R, K, steps, account, period_drop, a, b, whole):
     """At most a block of steps in the window [a, b); the wet cells afterwards."""
     if period_drop is None:  # one call, so that the kernel is compiled once
         _take(h[a:b], R[a:b], K, steps, account, None, K.scheme)
@@ -111,10 +110,8 @@ def take(h, R, K, steps, account, period_drop, a, b, whole):  # type: ignore[no-
     return moving_cells(R, a, b, K.scheme)
 
 
-@numba.njit(error_model="numpy")
-def _outlasts(  # type: ignore[no-untyped-def]
-    h, R, K, p, dt, steps, account, period_drop, is_watched
-):
+@inner
+def _outlasts(h, R, K, p, dt, steps, account, period_drop, is_watched):
     """``steps`` steps; where they are watched, up to the first block that outgrows dt.
 
     Below limits that have been seen to be harmless the bound need not be found again.
@@ -135,7 +132,7 @@ def _outlasts(  # type: ignore[no-untyped-def]
     return True
 
 
-def march(  # type: ignore[no-untyped-def]
+def march(
     h, R, piles, rows, K, parameters, dts, steps, accounts, period_drops, is_watched, has_outlasted
 ):
     """``steps`` steps of some of many piles, shape (piles, N), one after the other.
@@ -152,6 +149,6 @@ def march(  # type: ignore[no-untyped-def]
         )
 
 
-def march_frozen(h, R, drop, K, steps, account, period_drop):  # type: ignore[no-untyped-def]
+def march_frozen(h, R, drop, K, steps, account, period_drop):
     """``steps`` steps on a frozen slope."""
     frozen.march(h, R, drop, K, steps, account, period_drop)

@@ -9,12 +9,11 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numba
 import numpy as np
-from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from bcre_ca.coefficients import every_term, fold
+from bcre_ca.inner import inner
 from bcre_ca.line.kernels.bounds import limits_within, stable_step
 from bcre_ca.line.kernels.driver import BLOCK, moving_cells, take, window
 from bcre_ca.rule import ROUNDING
@@ -63,13 +62,13 @@ class State(NamedTuple):
     account: Array
 
 
-@register_jitable
+@inner
 def same_time(t: float, dt: float) -> float:
     """Time by which a wanted time may miss the end of a step and still be that."""
     return max(1e-9 * dt, 1e-15 * abs(t))
 
 
-@register_jitable
+@inner
 def steps_before(span: float, near: float, dt: float, most: int) -> int:
     """Whole steps in a span that may be longer by ``near``, at most so many."""
     if span + near >= most * dt:
@@ -77,8 +76,8 @@ def steps_before(span: float, near: float, dt: float, most: int) -> int:
     return int((span + near) / dt)
 
 
-@numba.njit(error_model="numpy")
-def _wanted(bound, course):  # type: ignore[no-untyped-def]
+@inner
+def _wanted(bound, course):
     """A calibrated rule wants at least the step at which its diffusion is the one asked for."""
     wanted = course.margin * bound
     if wanted < course.calibrating <= bound:
@@ -86,14 +85,14 @@ def _wanted(bound, course):  # type: ignore[no-untyped-def]
     return wanted
 
 
-@numba.njit(error_model="numpy")
-def _bound(h, R, every, period_drop, a, b, whole):  # type: ignore[no-untyped-def]
+@inner
+def _bound(h, R, every, period_drop, a, b, whole):
     largest, sink = limits_within(h, R, every, period_drop, a, b, whole)
     return stable_step(every, largest, sink)
 
 
-@numba.njit(error_model="numpy")
-def _copy(state, a, b, to):  # type: ignore[no-untyped-def]
+@inner
+def _copy(state, a, b, to):
     for i in range(a, b):
         to.h[i] = state.h[i]
         to.R[i] = state.R[i]
@@ -101,8 +100,8 @@ def _copy(state, a, b, to):  # type: ignore[no-untyped-def]
     to.account[1] = state.account[1]
 
 
-@numba.njit(error_model="numpy")
-def _note(clock, counts, t, dt, wanted, length, before):  # type: ignore[no-untyped-def]
+@inner
+def _note(clock, counts, t, dt, wanted, length, before):
     """A block of ``length`` steps of dt is over, and the time is t."""
     former = clock[FORMER]
     counts[LOWERED] += 1 if wanted < former * (1.0 - 1e-9) else 0
@@ -113,9 +112,7 @@ def _note(clock, counts, t, dt, wanted, length, before):  # type: ignore[no-unty
     clock[FORMER], clock[DT] = wanted, dt
 
 
-def follow(  # type: ignore[no-untyped-def]
-    state, p, course, until, blocks, period_drop, clock, counts, middle
-):
+def follow(state, p, course, until, blocks, period_drop, clock, counts, middle):
     """Change the state by at most ``blocks`` blocks, until the time ``until`` lies in one of them.
 
     ``middle`` is then the state before the step in which it lies, unless that is after the block. A

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import numba
-
 from bcre_ca.exchange import carried, deposit_thin, eroded
+from bcre_ca.inner import inner
 from bcre_ca.line.kernels.sweep import leave
 
 
-@numba.njit(error_model="numpy")
-def march(h, R, drop, K, steps, account, period_drop):  # type: ignore[no-untyped-def]
+@inner
+def march(h, R, drop, K, steps, account, period_drop):
     """``steps`` steps with the given drop beyond repose from each cell to the next."""
     last = h.size - 1
     for _ in range(steps):

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 
 from bcre_ca.exchange import carried, deposit_thin, eroded
+from bcre_ca.inner import inner
 from bcre_ca.sums import add
 
 
-@numba.njit(error_model="numpy")
-def sweep(h, R, K, steps, account, period_drop):  # type: ignore[no-untyped-def]
+@inner
+def sweep(h, R, K, steps, account, period_drop):
     """``steps`` sweeps, downhill or uphill; ``period_drop`` is None for open ends."""
     R_before = np.empty_like(R)
     for _ in range(steps):
@@ -23,8 +23,8 @@ def sweep(h, R, K, steps, account, period_drop):  # type: ignore[no-untyped-def]
             h[i], R[i] = deposit_thin(h[i], R[i], R_before[i], K.dry, K.emptying)
 
 
-@numba.njit(error_model="numpy")
-def _visit(h, R, i, K, period_drop):  # type: ignore[no-untyped-def]
+@inner
+def _visit(h, R, i, K, period_drop):
     """Update cell i from what is found there; return what leaves through the foot."""
     if i < h.size - 1:
         return _pass_on(h, R, i, i + 1, h[i + 1], K)
@@ -35,8 +35,8 @@ def _visit(h, R, i, K, period_drop):  # type: ignore[no-untyped-def]
     return foot
 
 
-@numba.njit(error_model="numpy")
-def _pass_on(h, R, i, below, h_below, K):  # type: ignore[no-untyped-def]
+@inner
+def _pass_on(h, R, i, below, h_below, K):
     """Update cell i and the rolling layer of the cell below; nothing leaves the line."""
     flux = carried(R[i], R[below], K)
     exchange = eroded(R[i], (h[i] - h_below) - K.repose_drop, 0.0, K)

@@ -5,15 +5,15 @@ A step predicts the layers at mid-time into rows of scratch, then corrects from 
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 
+from bcre_ca.inner import inner
 from bcre_ca.line.second_order import corrected, face_flux, predicted
 from bcre_ca.sums import add
 
 
-@numba.njit(error_model="numpy")
-def open_ends(h, R, K, steps, account):  # type: ignore[no-untyped-def]
+@inner
+def open_ends(h, R, K, steps, account):
     """``steps`` steps with a closed top and an open foot."""
     last = h.size - 1
     scratch = np.empty((4, h.size), h.dtype)
@@ -37,8 +37,8 @@ def open_ends(h, R, K, steps, account):  # type: ignore[no-untyped-def]
         add(account, foot)
 
 
-@numba.njit(error_model="numpy")
-def periodic(h, R, K, steps, period_drop):  # type: ignore[no-untyped-def]
+@inner
+def periodic(h, R, K, steps, period_drop):
     """``steps`` steps with joined ends; ``period_drop`` is the fall of the repose line."""
     last = h.size - 1
     scratch = np.empty((4, h.size), h.dtype)
@@ -65,8 +65,8 @@ def periodic(h, R, K, steps, period_drop):  # type: ignore[no-untyped-def]
         )
 
 
-@numba.njit(error_model="numpy")
-def _predict(h, R, cells, K, before, rise_before, scratch):  # type: ignore[no-untyped-def]
+@inner
+def _predict(h, R, cells, K, before, rise_before, scratch):
     """Mid-time values of the first cells; ``before`` and ``rise_before`` lie above cell 0."""
     h_mid, R_mid, R_face, g = scratch[0], scratch[1], scratch[2], scratch[3]
     for i in range(cells):
@@ -79,8 +79,8 @@ def _predict(h, R, cells, K, before, rise_before, scratch):  # type: ignore[no-u
         rise_before = rise
 
 
-@numba.njit(error_model="numpy")
-def _correct(h, R, cells, K, flux_in, before, scratch):  # type: ignore[no-untyped-def]
+@inner
+def _correct(h, R, cells, K, flux_in, before, scratch):
     """New layers of the first cells; ``flux_in`` and the drop ``before`` lie above cell 0."""
     h_mid, R_mid, R_face, g = scratch[0], scratch[1], scratch[2], scratch[3]
     for i in range(cells):

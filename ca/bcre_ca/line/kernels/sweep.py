@@ -14,10 +14,10 @@ Every kernel changes h and R, views of shape (N,). ``account`` holds the outflow
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 
 from bcre_ca.exchange import carried, deposit_thin, eroded, eroded_at_foot, leaving
+from bcre_ca.inner import inner
 from bcre_ca.sums import add
 
 TILE_FROM = 250_000
@@ -27,8 +27,8 @@ TILE = 4096
 TILE_STEPS = 32
 
 
-@numba.njit(error_model="numpy")
-def _sweep(h, R, cells, K, flux_in, before):  # type: ignore[no-untyped-def]
+@inner
+def _sweep(h, R, cells, K, flux_in, before):
     """One step of the first ``cells`` cells of the views; each has a neighbour downhill.
 
     ``flux_in`` enters the first cell, into which the surface drops by ``before``.
@@ -44,8 +44,8 @@ def _sweep(h, R, cells, K, flux_in, before):  # type: ignore[no-untyped-def]
         before = drop
 
 
-@numba.njit(error_model="numpy")
-def leave(h, R, last, K, flux_in, above, account):  # type: ignore[no-untyped-def]
+@inner
+def leave(h, R, last, K, flux_in, above, account):
     """One step of the cell at the open foot, into which the surface drops by ``above``."""
     foot = leaving(R[last], K)
     exchange = eroded_at_foot(R[last], above, K)
@@ -55,8 +55,8 @@ def leave(h, R, last, K, flux_in, above, account):  # type: ignore[no-untyped-de
     add(account, foot)
 
 
-@numba.njit(error_model="numpy")
-def open_ends(h, R, K, steps, account):  # type: ignore[no-untyped-def]
+@inner
+def open_ends(h, R, K, steps, account):
     """``steps`` steps with a closed top and an open foot."""
     last = h.size - 1
     if last >= TILE_FROM:
@@ -71,8 +71,8 @@ def open_ends(h, R, K, steps, account):  # type: ignore[no-untyped-def]
         leave(h, R, last, K, into_last, above, account)
 
 
-@numba.njit(error_model="numpy")
-def _tiled(h, R, K, steps, account):  # type: ignore[no-untyped-def]
+@inner
+def _tiled(h, R, K, steps, account):
     """:func:`open_ends` in tiles.
 
     Step t of tile j takes the cells from j TILE - t to (j + 1) TILE - t: there the step before has
@@ -101,8 +101,8 @@ def _tiled(h, R, K, steps, account):  # type: ignore[no-untyped-def]
                     leave(h, R, last, K, carried_flux[t], carried_drop[t], account)
 
 
-@numba.njit(error_model="numpy")
-def periodic(h, R, K, steps, period_drop):  # type: ignore[no-untyped-def]
+@inner
+def periodic(h, R, K, steps, period_drop):
     """``steps`` steps with joined ends; ``period_drop`` is the fall of the repose line."""
     last = h.size - 1
     for _ in range(steps):

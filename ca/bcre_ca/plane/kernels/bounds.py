@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 
+from bcre_ca.inner import inner, inner_reassociated
 from bcre_ca.plane.coefficients import Facets, Split4, Tilted, by_flow
 from bcre_ca.plane.kernels import facets, split4, tilted
 from bcre_ca.plane.kernels.storage import COLUMNS, ROWS
@@ -17,7 +17,7 @@ from bcre_ca.plane.law import gated
 _excesses_of = by_flow({Tilted: tilted.excesses, Split4: split4.excesses, Facets: facets.excesses})
 
 
-def extremes(f, K, cells, steps, w):  # type: ignore[no-untyped-def]
+def extremes(f, K, cells, steps, w):
     """Largest R, and largest drop that is missing to repose, of all that the next ``steps`` can
     read; both >= 0, and NaN where a layer is not finite. Compiled by
     :func:`bcre_ca.kept.kept`."""
@@ -38,13 +38,13 @@ def extremes(f, K, cells, steps, w):  # type: ignore[no-untyped-def]
     return largest, missing
 
 
-@numba.njit(error_model="numpy")
-def _float_of(bits):  # type: ignore[no-untyped-def]
+@inner
+def _float_of(bits):
     return np.int64(bits).view(np.float64)
 
 
-@numba.njit(error_model="numpy")
-def _largest(R):  # type: ignore[no-untyped-def]
+@inner
+def _largest(R):
     """Numbers >= 0 are ordered as the integers with the same bits, and a largest integer is found
     several at a time, which a largest float is not."""
     largest = np.int64(0)
@@ -53,8 +53,8 @@ def _largest(R):  # type: ignore[no-untyped-def]
     return _float_of(largest)
 
 
-@numba.njit(error_model="numpy")
-def _largest_missing(excess, free):  # type: ignore[no-untyped-def]
+@inner
+def _largest_missing(excess, free):
     largest = np.int64(0)
     for j in range(excess.size):
         missing = max(np.float64(gated(-excess[j], at(free, j))), 0.0)
@@ -62,8 +62,8 @@ def _largest_missing(excess, free):  # type: ignore[no-untyped-def]
     return _float_of(largest)
 
 
-@numba.njit(error_model="numpy", fastmath={"reassoc"})
-def _unfinished(h, R):  # type: ignore[no-untyped-def]
+@inner_reassociated
+def _unfinished(h, R):
     total = 0.0
     for j in range(h.size):
         total += h[j] * 0.0 + R[j] * 0.0

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import numba
-
+from bcre_ca.inner import inner
 from bcre_ca.plane.kernels.storage import COLUMNS, OPEN, PERIODIC, ROWS
 from bcre_ca.plane.kernels.views import copy
 
 
-@numba.njit(error_model="numpy")
-def mirror(f, i, foot_drop):  # type: ignore[no-untyped-def]
+@inner
+def mirror(f, i, foot_drop):
     """Renew what lies beyond the sides and closed or open ends of row i."""
     row, first, last = i + ROWS, COLUMNS, COLUMNS + f.M - 1
     left, right = (last, first) if f.sides == PERIODIC else (first, last)
@@ -26,8 +25,8 @@ def mirror(f, i, foot_drop):  # type: ignore[no-untyped-def]
                 f.h[row + 1, j] = f.h[row, j] - foot_drop if f.ends == OPEN else f.h[row, j]
 
 
-@numba.njit(error_model="numpy")
-def join(f):  # type: ignore[no-untyped-def]
+@inner
+def join(f):
     """Renew the rows beyond periodic ends."""
     top, foot = ROWS, ROWS + f.N - 1
     copy(f.R[foot], f.R[top - 1])

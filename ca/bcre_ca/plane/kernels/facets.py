@@ -7,9 +7,9 @@ of the rows and columns that they come from, as the plain step adds them.
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 
+from bcre_ca.inner import inner
 from bcre_ca.plane.facets import FACETS
 from bcre_ca.plane.kernels.steepest import steepest_of_cells
 from bcre_ca.plane.kernels.storage import COLUMNS, PERIODIC, ROWS
@@ -26,8 +26,8 @@ AXIS_I, AXIS_J = np.array([axis for axis, _ in FACETS]).T.copy()
 CORNER_I, CORNER_J = np.array([corner for _, corner in FACETS]).T.copy()
 
 
-@numba.njit(error_model="numpy")
-def begin(f, carry, first, lo, hi, K, flow):  # type: ignore[no-untyped-def]
+@inner
+def begin(f, carry, first, lo, hi, K, flow):
     """Carry what flows into row ``first``, before any row near it changes."""
     zero = K.courant - K.courant
     for k in range(3):
@@ -51,8 +51,8 @@ def begin(f, carry, first, lo, hi, K, flow):  # type: ignore[no-untyped-def]
     _send(f, carry, ALONG, first, lo, hi)
 
 
-@numba.njit(error_model="numpy")
-def take(f, carry, i, lo, hi, K, flow):  # type: ignore[no-untyped-def]
+@inner
+def take(f, carry, i, lo, hi, K, flow):
     """One step of the cells [lo, hi) of row i."""
     row = i + ROWS
     if i + 1 < f.N:
@@ -74,10 +74,8 @@ def take(f, carry, i, lo, hi, K, flow):  # type: ignore[no-untyped-def]
         copy(carry[INFLOW + (i + 1) % 3], carry[0])
 
 
-@numba.njit(error_model="numpy")
-def _cells(  # type: ignore[no-untyped-def]
-    h, R, R_below, flux, inflow, outflow, steepness, free, free_below, base, from_left, K
-):
+@inner
+def _cells(h, R, R_below, flux, inflow, outflow, steepness, free, free_below, base, from_left, K):
     """A function of its own, of rows: inside :func:`take` it would not be vectorised."""
     for j in range(h.size):
         here = R[j]
@@ -92,16 +90,16 @@ def _cells(  # type: ignore[no-untyped-def]
         from_left = to_right
 
 
-@numba.njit(error_model="numpy")
-def excesses(f, carry, i, lo, hi, K, flow):  # type: ignore[no-untyped-def]
+@inner
+def excesses(f, carry, i, lo, hi, K, flow):
     """By how much row i drops beyond repose, into ``carry[0]``."""
     _look(f, carry, i, 0, lo, hi, K, flow)
     for j in range(lo, hi):
         carry[0, j] = carry[STEEPNESS, j] - K.repose_drop
 
 
-@numba.njit(error_model="numpy")
-def _look(f, carry, i, place, lo, hi, K, flow):  # type: ignore[no-untyped-def]
+@inner
+def _look(f, carry, i, place, lo, hi, K, flow):
     """The steepest facets of row i, and what its cells send along and diagonally."""
     row = i + ROWS
     lower, upper = lo - 1, hi + 1
@@ -129,8 +127,8 @@ def _look(f, carry, i, place, lo, hi, K, flow):  # type: ignore[no-untyped-def]
                 carry[k, last + 1] = carry[k, first]
 
 
-@numba.njit(error_model="numpy")
-def _sent_by_cells(R, squared, a, b, sent, K):  # type: ignore[no-untyped-def]
+@inner
+def _sent_by_cells(R, squared, a, b, sent, K):
     """From the drops a and b: what is sent along and diagonally, and both; and the steepness."""
     zero = K.courant - K.courant
     for j in range(R.size):
@@ -142,8 +140,8 @@ def _sent_by_cells(R, squared, a, b, sent, K):  # type: ignore[no-untyped-def]
         sent[j] = along + diagonal
 
 
-@numba.njit(error_model="numpy")
-def _send(f, carry, sent, i, lo, hi):  # type: ignore[no-untyped-def]
+@inner
+def _send(f, carry, sent, i, lo, hi):
     """Put what the cells of row i send into the rows about it; the one below is begun with it."""
     fill(carry[INFLOW + (i + 1) % 3], 0, carry.shape[1], 0)
     rows = INFLOW + (i - 1) % 3, INFLOW + i % 3, INFLOW + (i + 1) % 3

@@ -13,8 +13,7 @@ cell, a row a step.
 
 from __future__ import annotations
 
-import numba
-
+from bcre_ca.inner import inner
 from bcre_ca.plane.coefficients import Facets, Split4, Tilted, by_flow
 from bcre_ca.plane.kernels import facets, split4, tilted
 from bcre_ca.plane.kernels.edges import join, mirror
@@ -31,8 +30,8 @@ _take = by_flow({Tilted: tilted.take, Split4: split4.take, Facets: facets.take})
 WHOLE, BEGIN, SLAB, WEDGE, END = range(5)
 
 
-@numba.njit(error_model="numpy")
-def _is_positive(heights):  # type: ignore[no-untyped-def]
+@inner
+def _is_positive(heights):
     for t in range(heights.shape[0]):
         for source in range(heights.shape[1]):
             if heights[t, source] > 0:
@@ -40,8 +39,8 @@ def _is_positive(heights):  # type: ignore[no-untyped-def]
     return False
 
 
-@numba.njit(error_model="numpy")
-def _begin_steps(f, cells, heights, w, most):  # type: ignore[no-untyped-def]
+@inner
+def _begin_steps(f, cells, heights, w, most):
     """Make ready for so many steps: what lies beyond the ends, the windows, ``most`` slabs."""
     if f.ends == PERIODIC:
         join(f)
@@ -49,8 +48,8 @@ def _begin_steps(f, cells, heights, w, most):  # type: ignore[no-untyped-def]
     return cut(w.windows, top, foot, most, 2 * w.reach * (len(heights) + 2), w.cuts)
 
 
-@numba.njit(error_model="numpy")
-def _row(f, K, cells, heights, windows, carry, sums, i, is_first):  # type: ignore[no-untyped-def]
+@inner
+def _row(f, K, cells, heights, windows, carry, sums, i, is_first):
     """One step of row i: the rule, what is poured, and what lies beyond its ends."""
     lo, hi = windows[0, i] + COLUMNS, windows[1, i] + COLUMNS
     if lo >= hi:
@@ -66,21 +65,21 @@ def _row(f, K, cells, heights, windows, carry, sums, i, is_first):  # type: igno
     mirror(f, i, K.foot_drop)
 
 
-@numba.njit(error_model="numpy")
-def _clear(carry):  # type: ignore[no-untyped-def]
+@inner
+def _clear(carry):
     for t in range(carry.shape[0]):
         for k in range(carry.shape[1]):
             fill(carry[t, k], 0, carry.shape[2], 0)
 
 
-@numba.njit(error_model="numpy")
-def _keep(f, i, kept, place):  # type: ignore[no-untyped-def]
+@inner
+def _keep(f, i, kept, place):
     copy(f.h[i + ROWS], kept[0, place])
     copy(f.R[i + ROWS], kept[1, place])
 
 
-@numba.njit(error_model="numpy")
-def _slab(s, f, K, cells, heights, w):  # type: ignore[no-untyped-def]
+@inner
+def _slab(s, f, K, cells, heights, w):
     """The rows of slab s but for the wedges at its cuts, through so many steps."""
     top, foot, steps, reach = w.cuts[s], w.cuts[s + 1], len(heights), w.reach
     is_cut_above, is_cut_below = s > 0, s < w.cuts[-1] - 1
@@ -99,23 +98,23 @@ def _slab(s, f, K, cells, heights, w):  # type: ignore[no-untyped-def]
                 _row(f, K, cells, heights[t], w.windows, carry[t], w.sums[s], i, i == first)
 
 
-@numba.njit(error_model="numpy")
-def _swap(f, i, kept, place):  # type: ignore[no-untyped-def]
+@inner
+def _swap(f, i, kept, place):
     for j in range(f.h.shape[1]):
         f.h[i + ROWS, j], kept[0, place, j] = kept[0, place, j], f.h[i + ROWS, j]
         f.R[i + ROWS, j], kept[1, place, j] = kept[1, place, j], f.R[i + ROWS, j]
 
 
-@numba.njit(error_model="numpy")
-def _swap_beside(f, middle, half, kept, t, reach):  # type: ignore[no-untyped-def]
+@inner
+def _swap_beside(f, middle, half, kept, t, reach):
     """Exchange the rows beside the part of a wedge that step t takes with those that are kept."""
     for k in range(reach):
         _swap(f, middle - half - 1 - k, kept[0], reach * t + k)
         _swap(f, middle + half + k, kept[1], reach * t + k)
 
 
-@numba.njit(error_model="numpy")
-def _wedge(s, f, K, cells, heights, w):  # type: ignore[no-untyped-def]
+@inner
+def _wedge(s, f, K, cells, heights, w):
     """The rows about the cut below slab s that the slabs above and below it have left out."""
     middle, carry = w.cuts[s + 1], w.carry[s]
     _clear(carry)
@@ -128,14 +127,14 @@ def _wedge(s, f, K, cells, heights, w):  # type: ignore[no-untyped-def]
         _swap_beside(f, middle, half, w.kept[s], t, w.reach)
 
 
-@numba.njit(error_model="numpy")
-def _borrowed_field(f):  # type: ignore[no-untyped-def]
+@inner
+def _borrowed_field(f):
     layers = borrowed(f.h), borrowed(f.R), borrowed(f.free), borrowed(f.base)
     return Field(layers[0], layers[1], layers[2], layers[3], f.N, f.M, f.ends, f.sides, f.fall)
 
 
-@numba.njit(error_model="numpy")
-def _borrowed_cells(cells):  # type: ignore[no-untyped-def]
+@inner
+def _borrowed_cells(cells):
     return Cells(
         borrowed(cells.first),
         borrowed(cells.column),
@@ -144,8 +143,8 @@ def _borrowed_cells(cells):  # type: ignore[no-untyped-def]
     )
 
 
-@numba.njit(error_model="numpy")
-def _borrowed_work(w):  # type: ignore[no-untyped-def]
+@inner
+def _borrowed_work(w):
     return Work(
         borrowed(w.wet),
         borrowed(w.windows),
@@ -158,7 +157,7 @@ def _borrowed_work(w):  # type: ignore[no-untyped-def]
     )
 
 
-def take_steps(part, s, f, K, cells, heights, w):  # type: ignore[no-untyped-def]
+def take_steps(part, s, f, K, cells, heights, w):
     """All steps as a WHOLE (s = 0), or a part of those together, which several threads share out.
 
     BEGIN returns the number of slabs, of which SLAB takes one; then WEDGE makes up for what is left

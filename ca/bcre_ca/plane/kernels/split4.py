@@ -7,9 +7,9 @@ Rows of speeds alternate between two places each, since row i's are needed until
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 
+from bcre_ca.inner import inner
 from bcre_ca.plane.kernels.storage import COLUMNS, PERIODIC, ROWS
 from bcre_ca.plane.kernels.views import at, copy, fill, part
 from bcre_ca.plane.law import changed, eroded, gate_between, gated, larger
@@ -19,8 +19,8 @@ CARRIED = 6
 REACH = 2
 
 
-@numba.njit(error_model="numpy")
-def begin(f, carry, first, lo, hi, K, flow):  # type: ignore[no-untyped-def]
+@inner
+def begin(f, carry, first, lo, hi, K, flow):
     """Carry what flows into row ``first`` and its speed, before any row near it changes."""
     flux = carry[0]
     _steepness(f, carry, first, lo, hi, K)
@@ -43,8 +43,8 @@ def begin(f, carry, first, lo, hi, K, flow):  # type: ignore[no-untyped-def]
         flux[j] = drop * (other[j] if drop > 0 else speed[j]) + diffusive
 
 
-@numba.njit(error_model="numpy")
-def take(f, carry, i, lo, hi, K, flow):  # type: ignore[no-untyped-def]
+@inner
+def take(f, carry, i, lo, hi, K, flow):
     """One step of the cells [lo, hi) of row i."""
     row = i + ROWS
     if i + 1 < f.N:
@@ -69,8 +69,8 @@ def take(f, carry, i, lo, hi, K, flow):  # type: ignore[no-untyped-def]
     _cells(*rows, from_left, K)
 
 
-@numba.njit(error_model="numpy")
-def _cells(  # type: ignore[no-untyped-def]
+@inner
+def _cells(
     h,
     h_below,
     R,
@@ -100,16 +100,16 @@ def _cells(  # type: ignore[no-untyped-def]
         from_left = to_right
 
 
-@numba.njit(error_model="numpy")
-def excesses(f, carry, i, lo, hi, K, flow):  # type: ignore[no-untyped-def]
+@inner
+def excesses(f, carry, i, lo, hi, K, flow):
     """By how much row i drops beyond repose, into ``carry[0]``."""
     _steepness_into(f, carry[1], carry[0], i, lo, hi, K)
     for j in range(lo, hi):
         carry[0, j] -= K.repose_drop
 
 
-@numba.njit(error_model="numpy")
-def _steepness(f, carry, i, lo, hi, K):  # type: ignore[no-untyped-def]
+@inner
+def _steepness(f, carry, i, lo, hi, K):
     """Steepness and speed of row i, and the speed beyond closed or joined sides."""
     speed = carry[SPEED + i % 2]
     _steepness_into(f, speed, carry[STEEPNESS + i % 2], i, lo, hi, K)
@@ -120,8 +120,8 @@ def _steepness(f, carry, i, lo, hi, K):  # type: ignore[no-untyped-def]
             speed[last + 1] = speed[first]
 
 
-@numba.njit(error_model="numpy")
-def _steepness_into(f, to_speed, to_steepness, i, lo, hi, K):  # type: ignore[no-untyped-def]
+@inner
+def _steepness_into(f, to_speed, to_steepness, i, lo, hi, K):
     row = i + ROWS
     h, R = f.h[row, lo - 1 : hi + 1], f.R[row, lo:hi]
     above, below = f.h[row - 1, lo:hi], f.h[row + 1, lo:hi]
@@ -131,10 +131,8 @@ def _steepness_into(f, to_speed, to_steepness, i, lo, hi, K):  # type: ignore[no
     _steepness_of_cells(h, above, below, free, free_above, free_below, R, speed, steepness, K)
 
 
-@numba.njit(error_model="numpy")
-def _steepness_of_cells(  # type: ignore[no-untyped-def]
-    h, above, below, free, free_above, free_below, R, speed, steepness, K
-):
+@inner
+def _steepness_of_cells(h, above, below, free, free_above, free_below, R, speed, steepness, K):
     zero = K.courant - K.courant
     for j in range(R.size):
         here, is_free = h[j + 1], at(free, j + 1)

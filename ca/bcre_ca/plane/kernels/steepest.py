@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import numba
-from numba.extending import register_jitable
-
+from bcre_ca.inner import inner
 from bcre_ca.plane.facets import dip
 from bcre_ca.plane.kernels.views import at
 from bcre_ca.plane.law import gate_between, gated
 
 
-@register_jitable
-def _steeper(best, along, diagonal, gate, half, is_straight, number):  # type: ignore[no-untyped-def]
+@inner
+def _steeper(best, along, diagonal, gate, half, is_straight, number):
     """This facet, where it is steeper than the best one before."""
     squared, a, b = dip(along, diagonal, gate, half, is_straight)
     is_better = squared > best[0]
@@ -23,8 +21,8 @@ def _steeper(best, along, diagonal, gate, half, is_straight, number):  # type: i
     )
 
 
-@numba.njit(error_model="numpy")
-def steepest_of_cells(  # type: ignore[no-untyped-def]
+@inner
+def steepest_of_cells(
     above, h, below, free_above, free, free_below, squared, a, b, facet, half, is_straight
 ):
     """All facets in the order of :data:`bcre_ca.plane.facets.FACETS`."""

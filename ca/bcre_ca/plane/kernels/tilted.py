@@ -6,8 +6,7 @@ i - 1, which it carries along.
 
 from __future__ import annotations
 
-import numba
-
+from bcre_ca.inner import inner
 from bcre_ca.plane.kernels.storage import OPEN, PERIODIC, ROWS
 from bcre_ca.plane.kernels.views import at, fill, part
 from bcre_ca.plane.law import changed, eroded, gate_between, gated
@@ -16,8 +15,8 @@ CARRIED = 1
 REACH = 1
 
 
-@numba.njit(error_model="numpy")
-def begin(f, carry, first, lo, hi, K, flow):  # type: ignore[no-untyped-def]
+@inner
+def begin(f, carry, first, lo, hi, K, flow):
     """Carry what flows into row ``first``, before that row or the one above it changes."""
     flux = carry[0]
     if first == 0 and f.ends != PERIODIC:
@@ -31,8 +30,8 @@ def begin(f, carry, first, lo, hi, K, flow):  # type: ignore[no-untyped-def]
         flux[j] = gated(K.outgoing * R_above[j] - K.diffusion * R[j], gate)
 
 
-@numba.njit(error_model="numpy")
-def take(f, carry, i, lo, hi, K, flow):  # type: ignore[no-untyped-def]
+@inner
+def take(f, carry, i, lo, hi, K, flow):
     """One step of the cells [lo, hi) of row i."""
     row = i + ROWS
     h, h_below = f.h[row, lo:hi], f.h[row + 1, lo:hi]
@@ -47,8 +46,8 @@ def take(f, carry, i, lo, hi, K, flow):  # type: ignore[no-untyped-def]
     _cells(h, h_below, R, R_below, flux, free, free_below, base, from_left, K)
 
 
-@numba.njit(error_model="numpy")
-def _cells(h, h_below, R, R_below, flux, free, free_below, base, from_left, K):  # type: ignore[no-untyped-def]
+@inner
+def _cells(h, h_below, R, R_below, flux, free, free_below, base, from_left, K):
     """A function of its own, of rows: inside :func:`take` it would not be vectorised."""
     for j in range(h.size):
         here = R[j]
@@ -62,8 +61,8 @@ def _cells(h, h_below, R, R_below, flux, free, free_below, base, from_left, K): 
         from_left = to_right
 
 
-@numba.njit(error_model="numpy")
-def _take_last(h, R, flux, free, base, from_left, K, is_open):  # type: ignore[no-untyped-def]
+@inner
+def _take_last(h, R, flux, free, base, from_left, K, is_open):
     """The row at the foot: its surface goes on at repose, or mirrors itself where it is closed."""
     zero = K.courant - K.courant
     courant, excess = (K.courant, zero) if is_open else (zero, -K.repose_drop)
@@ -77,8 +76,8 @@ def _take_last(h, R, flux, free, base, from_left, K, is_open):  # type: ignore[n
         from_left = to_right
 
 
-@numba.njit(error_model="numpy")
-def excesses(f, carry, i, lo, hi, K, flow):  # type: ignore[no-untyped-def]
+@inner
+def excesses(f, carry, i, lo, hi, K, flow):
     """By how much row i drops beyond repose, into ``carry[0]``."""
     row = i + ROWS
     if i == f.N - 1 and f.ends != PERIODIC:

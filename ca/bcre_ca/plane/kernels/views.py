@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import numba
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic, overload
+
+from bcre_ca.inner import inner
 
 
 def part(array: Any, row: int, lo: int, hi: int) -> Any:
@@ -20,7 +21,7 @@ def part(array: Any, row: int, lo: int, hi: int) -> Any:
 
 
 @overload(part)
-def _part(array, row, lo, hi):  # type: ignore[no-untyped-def]
+def _part(array, row, lo, hi):
     if isinstance(array, types.NoneType):
         return lambda array, row, lo, hi: None
     return lambda array, row, lo, hi: array[row, lo:hi]
@@ -32,29 +33,29 @@ def at(row: Any, j: int) -> Any:
 
 
 @overload(at)
-def _at(row, j):  # type: ignore[no-untyped-def]
+def _at(row, j):
     if isinstance(row, types.NoneType):
         return lambda row, j: None
     return lambda row, j: row[j]
 
 
-@numba.njit(error_model="numpy")
-def fill(row, lo, hi, value):  # type: ignore[no-untyped-def]
+@inner
+def fill(row, lo, hi, value):
     """``value`` into the elements [lo, hi)."""
     for j in range(lo, hi):
         row[j] = value
 
 
-@numba.njit(error_model="numpy")
-def copy(row, to):  # type: ignore[no-untyped-def]
+@inner
+def copy(row, to):
     """All elements of a row into another one."""
     for j in range(row.size):
         to[j] = row[j]
 
 
 @intrinsic
-def _without_owner(typing, array):  # type: ignore[no-untyped-def]
-    def body(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+def _without_owner(typing, array):
+    def body(context, builder, signature, arguments):
         copy = context.make_array(array)(context, builder, value=arguments[0])
         copy.meminfo = cgutils.get_null_value(copy.meminfo.type)
         copy.parent = cgutils.get_null_value(copy.parent.type)
@@ -70,7 +71,7 @@ def borrowed(array: Any) -> Any:
 
 
 @overload(borrowed)
-def _borrowed(array):  # type: ignore[no-untyped-def]
+def _borrowed(array):
     if isinstance(array, types.NoneType):
         return lambda array: None
     return lambda array: _without_owner(array)

@@ -8,8 +8,7 @@ row is 0 where their windows differ.
 
 from __future__ import annotations
 
-import numba
-
+from bcre_ca.inner import inner
 from bcre_ca.plane.kernels.storage import COLUMNS, PERIODIC, ROWS
 
 SEES = 4
@@ -18,8 +17,8 @@ ALIGNED = 8
 """Windows begin and end at whole groups of so many columns, which a processor takes at once."""
 
 
-@numba.njit(error_model="numpy")
-def widen(f, wet, cells, is_pouring, steps, windows):  # type: ignore[no-untyped-def]
+@inner
+def widen(f, wet, cells, is_pouring, steps, windows):
     """The windows of the next steps; the first row with one, and the row after the last."""
     by = steps + SEES
     for i in range(f.N):
@@ -43,8 +42,8 @@ def widen(f, wet, cells, is_pouring, steps, windows):  # type: ignore[no-untyped
     return top, foot
 
 
-@numba.njit(error_model="numpy")
-def _stretch(f, windows, i, lo, hi, by):  # type: ignore[no-untyped-def]
+@inner
+def _stretch(f, windows, i, lo, hi, by):
     first, last = i - by, i + by + 1
     if f.ends == PERIODIC and (first < 0 or last > f.N):
         first, last = 0, f.N
@@ -53,8 +52,8 @@ def _stretch(f, windows, i, lo, hi, by):  # type: ignore[no-untyped-def]
         windows[1, k] = max(windows[1, k], hi)
 
 
-@numba.njit(error_model="numpy")
-def look(f, windows, top, foot, wet):  # type: ignore[no-untyped-def]
+@inner
+def look(f, windows, top, foot, wet):
     """The wet cells of the rows [top, foot), all within their windows."""
     for i in range(top, foot):
         R, lo, hi = f.R[i + ROWS, COLUMNS:], windows[0, i], windows[1, i]
@@ -65,8 +64,8 @@ def look(f, windows, top, foot, wet):  # type: ignore[no-untyped-def]
         wet[0, i], wet[1, i] = (lo, hi) if lo < hi else (f.M, 0)
 
 
-@numba.njit(error_model="numpy")
-def cut(windows, top, foot, slabs, least, cuts):  # type: ignore[no-untyped-def]
+@inner
+def cut(windows, top, foot, slabs, least, cuts):
     """Cut the rows [top, foot) into slabs of like area, none of fewer rows than ``least``.
 
     Returns how many there are; ``cuts`` holds the rows at which they begin and the last one ends,

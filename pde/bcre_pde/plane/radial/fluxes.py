@@ -21,14 +21,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 from bcre_pde.exchange import exchange
+from bcre_pde.inner import inner
 from bcre_pde.kept import SOURCES, kept
 from bcre_pde.stencils import GHOSTS, face_value
-
-_compiled = numba.njit(error_model="numpy")
 
 
 class Coefficients(NamedTuple):
@@ -44,8 +42,8 @@ class Coefficients(NamedTuple):
     turning: float
 
 
-@_compiled
-def _second_differences(values, out):  # type: ignore[no-untyped-def]
+@inner
+def _second_differences(values, out):
     last = values.size - 1
     for i in range(1, last):
         out[i] = values[i - 1] - 2 * values[i] + values[i + 1]
@@ -53,8 +51,8 @@ def _second_differences(values, out):  # type: ignore[no-untyped-def]
     out[last] = out[last - 1]
 
 
-@_compiled
-def _corrected(values, second, fourth, bend, out):  # type: ignore[no-untyped-def]
+@inner
+def _corrected(values, second, fourth, bend, out):
     """values + second values'' + fourth values'''' by differences, into ``out``."""
     _second_differences(values, bend)
     last = values.size - 1
@@ -64,20 +62,20 @@ def _corrected(values, second, fourth, bend, out):  # type: ignore[no-untyped-de
         out[i] = values[i] + second * bend[i] + fourth * further
 
 
-@_compiled
-def to_points(means, bend, out):  # type: ignore[no-untyped-def]
+@inner
+def to_points(means, bend, out):
     """Values at the middles of cells from means over them."""
     _corrected(means, -1 / 24, 3 / 640, bend, out)
 
 
-@_compiled
-def to_means(points, bend, out):  # type: ignore[no-untyped-def]
+@inner
+def to_means(points, bend, out):
     """Means over cells from values at their middles."""
     _corrected(points, 1 / 24, -17 / 5760, bend, out)
 
 
-@_compiled
-def _extend(row, beyond, closed, dr):  # type: ignore[no-untyped-def]
+@inner
+def _extend(row, beyond, closed, dr):
     """Fill the ghosts beyond the rim: a mirror, or a row that falls at the slope ``beyond``."""
     cells = row.size - GHOSTS
     for ghost in range(GHOSTS):
@@ -87,15 +85,15 @@ def _extend(row, beyond, closed, dr):  # type: ignore[no-untyped-def]
             row[cells + ghost] = row[cells - 1] - beyond * (ghost + 1) * dr
 
 
-@_compiled
-def _towards(h, face, K):  # type: ignore[no-untyped-def]
+@inner
+def _towards(h, face, K):
     """n on a face: 1 where grains roll outwards, -1 inwards."""
     climb = (27 * (h[face] - h[face - 1]) - (h[face + 1] - h[max(face - 2, 0)])) / (24 * K.dr)
     return 1 - 2 * min(max(climb / K.turning, 0.0), 1.0)
 
 
-@_compiled
-def _ring_fluxes(q, R, h, K, flux):  # type: ignore[no-untyped-def]
+@inner
+def _ring_fluxes(q, R, h, K, flux):
     """G on the faces; q, R and h carry ghosts beyond the rim, R and q means, h points."""
     cells = flux.size - 1
     flux[0] = 0.0
@@ -119,8 +117,8 @@ def _ring_fluxes(q, R, h, K, flux):  # type: ignore[no-untyped-def]
     flux[cells] = 0.0 if K.closed else K.v * cells * K.dr * R[cells - 1]
 
 
-@_compiled
-def _steepest(h, i, K):  # type: ignore[no-untyped-def]
+@inner
+def _steepest(h, i, K):
     """dr abs(h_r) in cell i, towards where it falls; h carries ghosts beyond the rim."""
     if i == 0:
         outwards = (11 * h[0] - 18 * h[1] + 9 * h[2] - 2 * h[3]) / 6
@@ -138,11 +136,11 @@ def _steepest(h, i, K):  # type: ignore[no-untyped-def]
     return max(outwards, inwards, 0.0)
 
 
-def entry(sources: str):  # type: ignore[no-untyped-def]
+def entry(sources: str):
     """The compiled right-hand side; ``sources`` as in :mod:`bcre_pde.kept`."""
 
     @kept()
-    def rate(layers, rates, supply, K):  # type: ignore[no-untyped-def]
+    def rate(layers, rates, supply, K):
         """Write the time derivative of ``layers`` into ``rates``.
 
         Parameters

@@ -11,6 +11,10 @@ gone, so it may do better and is held to no upper end.
 
 Past the breaking time t* = 1/(gamma max R0') of the climbing wave there is no smooth solution: the
 order there is that of the differences between successive grids.
+
+The other models have exact solutions of their own: the simple wave of a thick flow, the exponential
+slope and the silo of Hadeler and Kuttler, the Cole-Hopf wave of Hwa and Kardar, the half heap and
+undermining of Prigozhin and Zaltzman.
 """
 
 from __future__ import annotations
@@ -27,6 +31,7 @@ from bcre_studies.reporting import style
 from bcre_studies.sweeps.parallel import each
 from bcre_studies.verification.order_of_accuracy import claims
 from bcre_studies.verification.order_of_accuracy.expected import CA, EXPECTED, PDE, kind
+from bcre_studies.verification.order_of_accuracy.further_models import CASES, observed
 from bcre_studies.verification.order_of_accuracy.layers import METHODS, solutions
 from bcre_studies.verification.order_of_accuracy.observed import errors_of, fit, past_breaking
 
@@ -66,10 +71,12 @@ def run() -> Tables:
         for key, group in table.groupby(list(KEYS), sort=False)
     ]
     broken = each(past_breaking, [CA, PDE], "order_of_accuracy, t > t*")
+    further = each(observed, range(len(CASES)), "order_of_accuracy, further models")
     return {
         "comparison": pd.DataFrame(fits),
         "errors": table.drop(columns="floor"),
         "past_breaking": pd.DataFrame(list(chain(*broken))),
+        "further_models": pd.DataFrame(further),
     }
 
 

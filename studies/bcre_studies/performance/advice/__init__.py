@@ -1,0 +1,1 @@
+"""Does what ``bcre advise`` advises reach the tolerance, at the least cost?"""
