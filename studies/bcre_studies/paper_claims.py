@@ -200,8 +200,8 @@ PAPER_CLAIMS = (
             ("plane_agreement", "figure 1, later on a plane"),
         ),
         remarks={
-            CONDITIONAL: "with cell size counted, at a cell Peclet number of 1, and up to t = 200; "
-            "later even D_eff and kappa_eff leave more than the tolerance"
+            CONDITIONAL: "with cell size counted, at a cell Peclet number v d/D of 1, and up to "
+            "t = 200; later even D_eff and kappa_eff leave more than the tolerance"
         },
     ),
     PaperClaim(

@@ -31,7 +31,7 @@ def slopes(automaton=1.5, bcre=2.5):
     return pd.DataFrame([row | {"automaton_theory": automaton * 1.001, "pde_theory": bcre}])
 
 
-def pulses(ends=(0.0, 0.35, 0.3)):
+def pulses(ends=(0.0, 0.35, 0.3), bcre=0.3):
     rows = [
         {
             "quantity": "final S - Sc",
@@ -39,7 +39,7 @@ def pulses(ends=(0.0, 0.35, 0.3)):
             "pulses": 1,
             "S0 - Sc": 0.3,
             "automaton": end,
-            "pde": 0.3,
+            "pde": bcre,
         }
         for end in ends
     ]
@@ -152,6 +152,16 @@ def test_a_slope_that_fell_below_repose_would_be_told():
     below = said("What one pulse does", repose_return=pulses((-0.2, 0.3)))
     assert "1 ended below repose" in below
     assert "None" not in below
+
+
+def test_each_model_is_said_to_steepen_by_its_own_number():
+    assert "at most from 0.30 to 0.35 above repose." in said("What one pulse does")
+    both = said("What one pulse does", repose_return=pulses(bcre=0.9))
+    assert "to 0.35 above repose (in BCRE from 0.30 to 0.90)." in both
+
+
+def test_a_slope_of_either_model_that_fell_below_repose_would_be_told():
+    assert "3 ended below" in said("What one pulse does", repose_return=pulses(bcre=-0.1))
 
 
 def test_who_is_faster_follows_the_times():

@@ -140,6 +140,29 @@ def test_table_of_a_step_starts_between_its_rows_and_the_spline_would_not(scene_
     assert (np.diff(h) <= 0).all()
 
 
+@pytest.mark.parametrize(
+    ("x", "heights"),
+    [
+        ([0, 20, 21, 100], [30, 30, 0, 0]),
+        ([0, 10, 20, 30, 40, 50, 60, 100], [48, 48, 48, 30, 0, 0, 20, 0]),
+    ],
+)
+def test_heights_stay_between_their_rows_whatever_the_slope_of_repose(scene_of, x, heights):
+    rows = np.array(x, float), np.array(heights, float)
+    scene = scene_of(surface=rows, Sc=0.5)
+    at = np.linspace(0, 100, 4001)
+    gap = np.minimum(np.searchsorted(rows[0], at, side="right"), rows[0].size - 1)
+    low, high = (pick(rows[1][gap - 1], rows[1][gap]) for pick in (np.minimum, np.maximum))
+    h = scene.initial(at)[0]
+    assert np.maximum(h - high, low - h).max() < 1e-6
+
+
+def test_spike_between_cells_is_refused_because_no_model_would_start_with_it(scene_of):
+    spike = [0.0, 50.0, 50.1, 50.2, 100.0], [0.0, 0.0, 10.0, 0.0, 0.0]
+    with pytest.raises(SceneError, match=r"rolling\.0\.file = 'rolling\.csv': .*too rough"):
+        scene_of(rolling=spike)
+
+
 def test_layer_of_a_table_stays_below_its_thickest_row(scene_of):
     R = [0.0, 0.0, 10.0, 10.0, 0.0, 0.0]
     scene = scene_of(rolling=([0.0, 30.0, 33.0, 67.0, 70.0, 100.0], R))
@@ -150,24 +173,26 @@ def test_layer_of_a_table_stays_below_its_thickest_row(scene_of):
     rows=st.lists(st.floats(0, 50), min_size=4, max_size=12),
     gaps=st.lists(st.floats(0.2, 5), min_size=11, max_size=11),
     closed=st.booleans(),
+    tilt=st.sampled_from([0.0, 0.5, -3.0]),
 )
-def test_function_stays_between_neighbouring_rows_but_at_smooth_extremes(rows, gaps, closed):
+def test_function_stays_between_neighbouring_rows_but_at_smooth_extremes(rows, gaps, closed, tilt):
     values = np.array(rows)
     x = np.concatenate([[0.0], np.cumsum(gaps)])[: values.size]
     if closed:
-        function = through_period(x, values, x[-1] + 1.0)
+        function = through_period(x, values, x[-1] + 1.0, tilt)
         x, values = np.append(x, x[-1] + 1.0), np.append(values, values[0])
     else:
-        function = through(x, values, (0.0, x[-1]))
+        function = through(x, values, (0.0, x[-1]), tilt)
     places = x[:-1, None] + np.linspace(0, 1, 41) * np.diff(x)[:, None]
-    found = function(places)
-    low, high = np.minimum(values[:-1], values[1:]), np.maximum(values[:-1], values[1:])
-    beyond = np.maximum(found.max(axis=1) - high, low - found.min(axis=1))
     bend = np.abs(np.diff(np.diff(values) / np.diff(x)))
-    assert beyond.max() <= bend.max() * np.diff(x).max() / 4 + 1e-6
-    monotone = (np.diff(values) >= 0).all() or (np.diff(values) <= 0).all()
-    if monotone and not closed:
-        assert beyond.max() <= 1e-7
+    for taken in (0.0, tilt):
+        found, ends = function(places) - taken * places, values - taken * x
+        low, high = np.minimum(ends[:-1], ends[1:]), np.maximum(ends[:-1], ends[1:])
+        beyond = np.maximum(found.max(axis=1) - high, low - found.min(axis=1))
+        assert beyond.max() <= bend.max() * np.diff(x).max() / 4 + 1e-6
+        monotone = (np.diff(ends) >= 0).all() or (np.diff(ends) <= 0).all()
+        if monotone and not closed:
+            assert beyond.max() <= 1e-7
 
 
 @pytest.mark.parametrize("closed", [False, True])

@@ -97,6 +97,8 @@ def test_scenes_of_the_paper_are_built_in():
         ("v = 0.1", "v = -0.1", ["material.v", "-0.1", "greater than or equal to 0"]),
         ("v = 0.1", "v = nan", ["material.v", "nan", "finite"]),
         ("v = 0.1", "v = inf", ["material.v", "inf"]),
+        ("v = 0.1", "v = -1_0e-3", ["material.v = -1_0e-3: "]),
+        ("cells = 20", "cells = 2e1", ["domain.cells = 2e1: "]),
         ("v = 0.1", 'v = "fast"', ["material.v", "'fast'", "number"]),
         ("v = 0.1", "v = true", ["material.v", "True", "number"]),
         ("v = 0.1", "", ["material.v", "required"]),

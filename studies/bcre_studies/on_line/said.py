@@ -69,7 +69,7 @@ def verdict(runs: Sequence[Run], layer: Quantity) -> str:
     text += f", whose own error is {_percent(layer.error, 1)}: "
     if layer.error <= SHARE * layer.apart or layer.error <= SHARE * SHARE:
         return text + "resolved."
-    text += "unresolved."
+    text += f"unresolved, because that is more than {_percent(SHARE, 1)} of the difference."
     pde = runs[-1]
     has_jump = bool(pde.coarser) and bcre_pde.jump_stands(pde.coarser[-1], pde)
     if has_jump and pde.scene.material.kappa == 0:

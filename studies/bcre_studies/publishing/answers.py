@@ -98,6 +98,10 @@ def _critical(found: Headline) -> str:
 def _pulse(found: Headline) -> str:
     pulses = found.pulses
     start, end = pulses.most_steepened
+    start_bcre, end_bcre = pulses.most_steepened_bcre
+    in_bcre = ""
+    if end_bcre > start_bcre:
+        in_bcre = f" (in BCRE from {fixed(start_bcre)} to {fixed(end_bcre)})"
     text = (
         f"In {pulses.cases} runs on slopes above repose, one pulse brought {pulses.came_down} down "
         f"to repose ({pulses.came_down_bcre} in BCRE)."
@@ -105,7 +109,7 @@ def _pulse(found: Headline) -> str:
     if pulses.steeper:
         text += (
             f" In {pulses.steeper} the slope became steeper, at most from {fixed(start)} to "
-            f"{fixed(end)} above repose."
+            f"{fixed(end)} above repose{in_bcre}."
         )
     if pulses.below:
         return text + f" {pulses.below} ended below repose."

@@ -50,8 +50,9 @@ def _roughness(tables: Tables) -> str:
     rows = of(tables["comparison"], quantity="decay rate of u", d=1.0)
     row = rows.iloc[(rows["k"] - 0.5).abs().argmin()]
     return (
-        f"decay rate of the surface at k = {row['k']:.1g}: {number(float(row['automaton']), 2)} "
-        f"against {number(max(float(row[BCRE.column]), 0.0), 1)} in BCRE"
+        f"decay rate of the surface at wavenumber {row['k']:.1g}: "
+        f"{number(float(row['automaton']), 2)} against "
+        f"{number(max(float(row[BCRE.column]), 0.0), 1)} in BCRE"
     )
 
 
@@ -60,7 +61,8 @@ def _uphill(tables: Tables) -> str:
     row = rows.iloc[(rows["value"] - 2.1).abs().argmin()]
     return (
         f"front of the rolling layer at S − Sc = {number(float(row['value']))}: "
-        f"{number(float(row['automaton']), 2)} against {number(float(row[BCRE.column]), 2)} in BCRE"
+        f"{number(float(row['automaton']), 2)} against "
+        f"{number(float(row[BCRE.column]), 2)} in BCRE"
     )
 
 
@@ -121,8 +123,9 @@ def _rolling_roughness(tables: Tables) -> str:
     rows = of(tables["comparison"], quantity="decay rate of R", d=1.0)
     row = rows.iloc[(rows["k"] - 0.5).abs().argmin()]
     return (
-        f"decay rate of the rolling layer at k = {row['k']:.1g}: "
-        f"{number(float(row['automaton']), 2)} against {number(float(row[BCRE.column]), 2)} in BCRE"
+        f"decay rate of the rolling layer at wavenumber {row['k']:.1g}: "
+        f"{number(float(row['automaton']), 2)} against "
+        f"{number(float(row[BCRE.column]), 2)} in BCRE"
     )
 
 

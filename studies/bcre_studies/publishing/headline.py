@@ -67,7 +67,8 @@ class CriticalSlopes:
 class Pulses:
     """One pulse on slopes above repose: how many came down to Sc, became steeper, fell below.
 
-    ``most_steepened`` is S - Sc before and after where it rose most, in either model.
+    ``most_steepened`` is S - Sc before and after where the automaton's rose most,
+    ``most_steepened_bcre`` likewise; ``below`` counts both models.
     """
 
     cases: int
@@ -75,6 +76,7 @@ class Pulses:
     came_down_bcre: int
     steeper: int
     most_steepened: tuple[float, float]
+    most_steepened_bcre: tuple[float, float]
     below: int
 
 
@@ -179,16 +181,18 @@ def _slopes(table: pd.DataFrame) -> CriticalSlopes:
 def _pulses(table: pd.DataFrame) -> Pulses:
     rows = of(table, quantity="final S - Sc", pulses=1)
     rows = rows[(rows["case"] != "repeated") & (rows["S0 - Sc"] > 0)]
-    start, end = rows["S0 - Sc"].astype(float), rows["automaton"].astype(float)
-    highest = rows[[AUTOMATON.column, BCRE.column]].astype(float).max(axis=1)
-    most = (highest - start).idxmax()
+    start, end, end_bcre = (
+        rows[column].astype(float) for column in ("S0 - Sc", AUTOMATON.column, BCRE.column)
+    )
+    most, most_bcre = ((last - start).idxmax() for last in (end, end_bcre))
     return Pulses(
         cases=len(rows),
         came_down=int((end.abs() <= AT_REPOSE).sum()),
-        came_down_bcre=int((rows[BCRE.column].astype(float).abs() <= AT_REPOSE).sum()),
+        came_down_bcre=int((end_bcre.abs() <= AT_REPOSE).sum()),
         steeper=int((end > start).sum()),
-        most_steepened=(float(start[most]), float(highest[most])),
-        below=int((end < -AT_REPOSE).sum()),
+        most_steepened=(float(start[most]), float(end[most])),
+        most_steepened_bcre=(float(start[most_bcre]), float(end_bcre[most_bcre])),
+        below=int((end < -AT_REPOSE).sum() + (end_bcre < -AT_REPOSE).sum()),
     )
 
 

@@ -38,11 +38,20 @@ def misplaced(function: PPoly, domain: Domain, cells: int) -> float:
     """
     values = np.asarray(function(domain.centres(cells)))
     remainder = _means(function, domain, cells) - values - _bends(values, domain.ends) / 24
-    places, rows = function.x[:-1], function.c[-1]
-    if _size(remainder) <= DIGITS * float(np.ptp(rows)):
+    largest = float(np.abs(remainder).max())
+    if largest <= DIGITS * float(np.ptp(function.c[-1])):
         return 0.0
-    line = np.polynomial.Polynomial.fit(places, rows, 1)
-    return _size(remainder) / _size(rows - line(places))
+    return _size(remainder) / _deviation(function)
+
+
+def _deviation(function: PPoly) -> float:
+    """Root mean square of the function's deviation from a straight line, over its length."""
+    nodes, weights = np.polynomial.legendre.leggauss(4)  # exact for the square of a cubic
+    gaps = np.diff(function.x)[:, None]
+    at = (function.x[:-1, None] + gaps * (nodes + 1) / 2).ravel()
+    share = (gaps * weights / 2).ravel() / (function.x[-1] - function.x[0])
+    line = np.polynomial.Polynomial.fit(at, function(at), 1, w=np.sqrt(share))
+    return float(np.sqrt(np.sum(share * (function(at) - line(at)) ** 2)))
 
 
 def _means(function: PPoly, domain: Domain, cells: int) -> Array:

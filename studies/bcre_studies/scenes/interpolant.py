@@ -5,6 +5,11 @@ smooth extremum: the second difference has one sign at the four rows around, and
 above both values by no more than twice what a parabola of that curvature would, f'' g^2/8 over rows
 g apart. Elsewhere both slopes become those of the monotone interpolant (PCHIP; Fritsch and Butland
 1984), so that a step of a table stays a step. Smooth tables keep the spline's fourth order.
+
+Heights are interpolated as u = h + Sc x, which is even where h is at repose; neither may leave its
+rows. A cubic is monotone where its slopes at both ends lie between 0 and three times the secant s
+(Fritsch and Carlson 1980). Slopes are taken into that range of u and that of h, in which s always
+lies, on each side of a row for itself.
 """
 
 from __future__ import annotations
@@ -12,6 +17,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bcre_studies.scenes.domain import Array
 
@@ -25,7 +31,7 @@ AROUND = 3
 """Rows repeated beyond joined ends, so that each has its neighbours."""
 
 
-def through(x: Array, values: Array, reach: tuple[float, float]) -> PPoly:
+def through(x: Array, values: Array, reach: tuple[float, float], tilt: float = 0.0) -> PPoly:
     """The function through rows with open ends.
 
     It is continued to ``reach`` by the spline where that goes on like the rows, else in a straight
@@ -35,19 +41,23 @@ def through(x: Array, values: Array, reach: tuple[float, float]) -> PPoly:
     ----------
     x, values: the rows, x ascending, shape (N,), N >= 4.
     reach: first and last position that will be asked for.
+    tilt: values - tilt x stays between its rows too.
     """
     from scipy.interpolate import CubicSpline  # a third of a second that most scenes do not need
 
     spline = CubicSpline(x, values)
-    slopes, limited = _limited(x, values, np.asarray(spline(x, 1)))
-    function = _hermite(x, values, slopes) if limited.any() else spline
+    left, right, limited = _limited(x, values, np.asarray(spline(x, 1)), tilt)
+    function = _hermite(x, values, left, right) if limited.any() else spline
     for side, end in zip((0, -1), reach, strict=True):
         function = _continued(function, x, values, side, end, straight=bool(limited[side]))
     return function
 
 
-def through_period(x: Array, values: Array, period: float) -> PPoly:
-    """The function through rows that repeat; those given span less than the period."""
+def through_period(x: Array, values: Array, period: float, tilt: float = 0.0) -> PPoly:
+    """The function through rows that repeat; those given span less than the period.
+
+    ``tilt`` is that of :func:`through`.
+    """
     from scipy.interpolate import CubicSpline
 
     around, closed = np.append(x, x[0] + period), np.append(values, values[0])
@@ -55,35 +65,59 @@ def through_period(x: Array, values: Array, period: float) -> PPoly:
     count = min(AROUND, x.size)
     wide = np.concatenate([x[-count:] - period, x, x[:count] + period])
     repeated = np.concatenate([values[-count:], values, values[:count]])
-    slopes, limited = _limited(wide, repeated, np.asarray(spline(wide, 1)))
-    if not limited[count : count + x.size].any():
+    left, right, limited = _limited(wide, repeated, np.asarray(spline(wide, 1)), tilt)
+    own = slice(count, count + x.size)
+    if not limited[own].any():
         return spline
-    own = slopes[count : count + x.size]
-    function = _hermite(around, closed, np.append(own, own[0]))
+    function = _hermite(around, closed, left[own], right[own])
     function.extrapolate = "periodic"
     return function
 
 
-def _hermite(x: Array, values: Array, slopes: Array) -> PPoly:
-    from scipy.interpolate import CubicHermiteSpline
+def _hermite(x: Array, values: Array, left: Array, right: Array) -> PPoly:
+    """The cubics with these slopes at the left and the right end of every interval."""
+    from scipy.interpolate import PPoly
 
-    return CubicHermiteSpline(x, values, slopes)
+    gap = np.diff(x)
+    secant = np.diff(values) / gap
+    bend = (left + right - 2 * secant) / gap
+    return PPoly(np.array([bend / gap, (secant - left) / gap - bend, left, values[:-1]]), x)
 
 
-def _limited(x: Array, values: Array, slopes: Array) -> tuple[Array, Array]:
-    """Slopes at the rows, and which intervals had to take those of the monotone interpolant.
+def _limited(
+    x: Array, values: Array, slopes: Array, tilt: float
+) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Slopes at both ends of the intervals, and which are those of the monotone interpolant.
 
     A slope that changes may let the interval beside leave its range, so that it is asked again.
     """
+    # Bends, and with them what a smooth extremum may rise, are those of the tilted values too.
     allowed = _smooth_rise(x, values) + ROUNDING * float(np.ptp(values))
     limited = np.zeros(x.size - 1, dtype=bool)
+    left, right = slopes[:-1], slopes[1:]
     while True:
-        beyond = ~limited & (_rise_beyond_rows(x, values, slopes) > allowed)
+        rise = np.maximum(
+            _rise_beyond_rows(x, values, left, right),
+            _rise_beyond_rows(x, values - tilt * x, left - tilt, right - tilt),
+        )
+        beyond = ~limited & (rise > allowed)
         if not beyond.any():
-            return slopes, limited
+            return left, right, limited
         limited |= beyond
         at = np.append(limited, False) | np.append(False, limited)
         slopes = np.where(at, _monotone_slopes(x, values), slopes)
+        low, high = _monotone_range(np.diff(values) / np.diff(x), tilt)
+        left, right = (
+            np.where(limited, np.clip(side, low, high), side) for side in (slopes[:-1], slopes[1:])
+        )
+
+
+def _monotone_range(secant: Array, tilt: float) -> tuple[Array, Array]:
+    """Least and largest slope at the ends with which values and tilted values are monotone."""
+    tilted = secant - tilt
+    low = np.maximum(np.minimum(0.0, 3 * secant), tilt + np.minimum(0.0, 3 * tilted))
+    high = np.minimum(np.maximum(0.0, 3 * secant), tilt + np.maximum(0.0, 3 * tilted))
+    return low, high
 
 
 def _monotone_slopes(x: Array, values: Array) -> Array:
@@ -93,10 +127,10 @@ def _monotone_slopes(x: Array, values: Array) -> Array:
         return np.asarray(PchipInterpolator(x, values).derivative()(x))
 
 
-def _rise_beyond_rows(x: Array, values: Array, slopes: Array) -> Array:
+def _rise_beyond_rows(x: Array, values: Array, left: Array, right: Array) -> Array:
     """How far the cubic of every interval rises above, or falls below, both its rows."""
     gap, change = np.diff(x), np.diff(values)
-    left, right = slopes[:-1] * gap, slopes[1:] * gap
+    left, right = left * gap, right * gap
     cubic, square = left + right - 2 * change, 3 * change - 2 * left - right
     # Where c/q and q/(3 a) are the roots of 3 a s^2 + 2 b s + c = 0, s = 0 .. 1.
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):

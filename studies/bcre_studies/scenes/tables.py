@@ -122,11 +122,14 @@ def _number(name: str, text: str, line: int, refuse: Callable[[str], ProfileErro
     return value
 
 
-def profile(what: str, x: Array, values: Array, domain: Domain) -> PPoly:
-    """The function through the table, closed over the period where ends are periodic."""
+def profile(what: str, x: Array, values: Array, domain: Domain, tilt: float = 0.0) -> PPoly:
+    """The function through the table, closed over the period where ends are periodic.
+
+    Neither it nor what ``tilt`` times x leaves of it goes beyond neighbouring rows.
+    """
     length = domain.length
     if domain.ends != "periodic":
-        return through(x, values, (0.0, length))
+        return through(x, values, (0.0, length), tilt)
     inside = x < x[0] + length * (1 - 1e-9)
     places, closing = x[inside], values[inside]
     steepest = float(np.max(np.abs(np.diff(closing) / np.diff(places))))
@@ -139,4 +142,4 @@ def profile(what: str, x: Array, values: Array, domain: Domain) -> PPoly:
             f"{what} goes from {values[0]:.6g} at x = {x[0]:.6g} to {values[-1]:.6g} at "
             f"x = {x[-1]:.6g}; with periodic ends it must close over domain.length = {length:.6g}"
         )
-    return through_period(places, closing, length)
+    return through_period(places, closing, length, tilt)

@@ -101,7 +101,8 @@ class TableSurface(Term):
     def load(self, key: str, folder: Path, domain: Domain, tilt: float) -> None:
         x, h = read_table(key, folder / self.file, "h", domain)
         self._measured, self._tilt = h, tilt
-        self._profile = profile(f"{key}.file = {self.file!r}: h + Sc x", x, h + tilt * x, domain)
+        what = f"{key}.file = {self.file!r}: h + Sc x"
+        self._profile = profile(what, x, h + tilt * x, domain, tilt)
 
     def measured(self) -> Array:
         """The rows of the file as they are."""

@@ -24,6 +24,20 @@ WIDEST = 1_000
 """Characters of one of its lines; keys of very many parts would take hours to be read."""
 
 
+class AsWritten(float):
+    """A number that is shown as it was written: 1e-3, not 0.001."""
+
+    _text: str
+
+    def __new__(cls, text: str) -> AsWritten:
+        number = super().__new__(cls, text)
+        number._text = str(text)
+        return number
+
+    def __repr__(self) -> str:
+        return self._text
+
+
 def read(source: str | Path, overrides: Sequence[str], sections: Sections) -> tuple[Any, Path]:
     """The values of a built-in scene or a TOML file, overridden, and the folder it lies in.
 
@@ -40,7 +54,7 @@ def read(source: str | Path, overrides: Sequence[str], sections: Sections) -> tu
     path = path_of(str(source)) or Path(source)
     text = _text(path)
     try:
-        data = tomllib.loads(text)
+        data = tomllib.loads(text, parse_float=AsWritten)
     except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
         raise SceneError(f"{source}: not a TOML file: {error}") from None
     for assignment in overrides:
@@ -97,7 +111,7 @@ def assign(data: dict[str, Any], key: str, value: Any, sections: Sections) -> No
 
 def _toml_value(text: str) -> Any:
     try:
-        parsed = tomllib.loads(f"value = {text}")
+        parsed = tomllib.loads(f"value = {text}", parse_float=AsWritten)
     except (ValueError, RecursionError):
         return text
     return parsed["value"] if len(parsed) == 1 else text

@@ -8,8 +8,9 @@ automaton's modified equation (Warming and Hyett 1974; ``bcre_ca.theory``)
 
 The paper gives v, D and gamma of its figures 1 to 3; all else is ours and stands in the scenes.
 Figures 2 and 3 are compared at their end, with dt = 0.2 d. Figure 1 (dt = 0.4 d) is compared at
-t = 180 and 200: its climbing wave steepens into a scarp at t = 175, and 3200 cells still resolve
-BCRE there. At t = 250 they do not: that time is drawn, and judged with D_eff and kappa_eff only.
+t = 180 and 200, just after its climbing wave has steepened into a scarp at t = 175, on up to 3200
+cells, and judged where they resolve BCRE. The time of the paper's picture, t = 250, is drawn, and
+judged with D_eff and kappa_eff only.
 
 A climb multiplies every early difference. Figure 1, above both critical slopes and between them, is
 therefore also compared by a time that no shift changes: that in which the scarp climbs from 10 % to
