@@ -68,9 +68,9 @@ reference: install ## hold 300 random scenes against plain integrations (some mi
 	$(BIN)/python tests/reference/random_scenes.py
 
 bench: install ## time the automaton against what would be used instead (under 3 minutes)
-	@$(BIN)/python -c 'import fipy' 2>/dev/null \
+	@$(BIN)/python -c 'import fipy, landlab, taichi' >/dev/null 2>&1 \
 		|| $(PIP) --require-hashes -r requirements-bench.lock \
-		|| echo 'FiPy cannot be installed here: its benchmarks are skipped' >&2
+		|| echo 'FiPy, landlab and Taichi cannot be installed here: their benchmarks are skipped' >&2
 	$(BIN)/python -m pytest -o addopts='--import-mode=importlib -q --strict-markers' -o python_files='bench_*.py' -o python_functions='bench_*' tests/benchmarks
 
 check: install ## judge all claims again; fails where a verdict differs from reports/verdicts.csv

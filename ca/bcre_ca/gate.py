@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from numbers import Real
 from typing import Any
 
@@ -82,6 +82,12 @@ def require_kind(name: str, value: Any, kind: type) -> None:
         raise ValueError(f"{name} = {value!r}: must be of the kind {kind.__name__}")
 
 
+def require_all_of_kind(name: str, values: Any, kind: type) -> None:
+    """Raise ValueError where the argument is no sequence of that type."""
+    if not isinstance(values, Sequence) or not all(isinstance(one, kind) for one in values):
+        raise ValueError(f"{name} = {values!r}: must be a sequence of the kind {kind.__name__}")
+
+
 def is_finite(value: Any) -> bool:
     """Whether it is a finite real number, and one that fits into double precision."""
     return is_number(value) and math.isfinite(value)
@@ -91,6 +97,8 @@ def is_number(value: Any) -> bool:
     """Whether it is a real number, infinite or not, that fits into double precision."""
     if isinstance(value, float):  # most are, and the abstract class is slow to ask
         return value == value
+    if isinstance(value, bool):
+        return False
     try:
         return isinstance(value, Real) and not math.isnan(value)
     except OverflowError:

@@ -21,11 +21,13 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
+from numbers import Real
 from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bcre_pde.gate import is_finite
 from bcre_pde.problem import Array
 
 SAFETY, UNCONFIRMED_SAFETY = 1.25, 3.0
@@ -68,6 +70,11 @@ def grid_convergence_index(
     >>> round(found.order, 6), round(found.error, 6)
     (2.0, 0.0125)
     """
+    shapes = {np.shape(values) for values in (coarse, medium, fine)}
+    if len(shapes) > 1:
+        raise ValueError(f"fine, medium, coarse have the shapes {shapes}: must be of one")
+    if not (is_finite(ratio) and ratio > 1):
+        raise ValueError(f"ratio = {ratio!r}: must be a number > 1")
     before, last = changes([coarse, medium, fine])
     if last == 0:
         return GridConvergence(math.inf, 0.0)
@@ -96,6 +103,8 @@ def error_of_finest(
     jump: whether a jump stands in the profile.
     ratio: refinement ratio, > 1.
     """
+    if not all(isinstance(change, Real) for change in changed):
+        raise ValueError(f"changed = {changed!r}: must be numbers")
     if len(changed) < 2:
         return GridConvergence(-math.inf, math.inf)
     last = list(changed[-TRIPLES - 1 :])

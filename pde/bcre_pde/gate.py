@@ -42,6 +42,13 @@ def require_kind(name: str, value: Any, kind: type) -> None:
         raise ValueError(f"{name} = {value!r}: must be of the kind {kind.__name__}")
 
 
+def require_callable(**functions: Any) -> None:
+    """Raise ValueError for an argument that should be a function and is not."""
+    for name, function in functions.items():
+        if not callable(function):
+            raise ValueError(f"{name} = {function!r}: must be a function")
+
+
 def is_finite(value: Any) -> bool:
     """Whether it is a finite real number, and one that fits into double precision."""
     return is_number(value) and math.isfinite(value)
@@ -50,7 +57,8 @@ def is_finite(value: Any) -> bool:
 def is_number(value: Any) -> bool:
     """Whether it is a real number, infinite or not, that fits into double precision."""
     try:  # float first: most are, and the abstract class is slow to ask
-        return isinstance(value, (float, Real)) and not math.isnan(value)
+        is_real = isinstance(value, (float, Real)) and not isinstance(value, bool)
+        return is_real and not math.isnan(value)
     except OverflowError:
         return False
 

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from bcre_pde.convergence import TRIPLES, changes, error_of_finest, jump_stands
 from bcre_pde.failure import SolveError
+from bcre_pde.gate import require_callable
 from bcre_pde.problem import Problem, Solution
 from bcre_pde.solve import solve
 
@@ -139,6 +140,7 @@ def solve_refined_each(
     allowed: see :func:`measure_refined`; e.g. a tenth of the difference that is to be reported.
     coarsest, finest: smallest and largest number of cells; at least three grids are solved.
     """
+    require_callable(measure=measure, allowed=allowed)
 
     def measure_on(cells: int) -> tuple[Solution, Sequence[Any]]:
         solution = solve(problem, times, cells, **options)
@@ -157,6 +159,7 @@ def solve_refined(
     **options: Any,
 ) -> Measured:
     """:func:`solve_refined_each` of a single quantity."""
+    require_callable(measure=measure, allowed=allowed)
     (measured,) = solve_refined_each(
         problem,
         times,

@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
-from bcre_pde.gate import ascending, initial_layers, require_kind, require_tolerance, whole
+from bcre_pde.gate import (
+    ascending,
+    initial_layers,
+    require_callable,
+    require_kind,
+    require_tolerance,
+    whole,
+)
+from bcre_pde.material import Material
 from bcre_pde.problem import SMALLEST_GRID, Array, Method, Problem, Solution
 from bcre_pde.source import Source
 
@@ -67,6 +75,10 @@ def solve(
     from bcre_pde.advance import advance
     from bcre_pde.equation import BCRE
 
+    if stop is not None:
+        require_callable(stop=stop)
+    if equation is None:
+        require_kind("material", problem.material, Material)
     model = BCRE if equation is None else equation
     grid = model.grid(problem.length, cells, problem.ends)
     marched = model(problem.material, grid, MOST_EVALUATIONS, problem.ends == "wall")

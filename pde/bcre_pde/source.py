@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bcre_pde.gate import is_finite, is_number, require_not_negative, require_positive
+from bcre_pde.gate import is_finite, is_number, require_kind, require_not_negative, require_positive
 
 Array = NDArray[np.float64]
 
@@ -58,7 +58,10 @@ class Source:
 
 def require_on_line(sources: Iterable[Source], length: float) -> None:
     """Raise ValueError for a source of which a part lies beyond 0 <= x <= length."""
+    if not isinstance(sources, Iterable):
+        raise ValueError(f"sources = {sources!r}: must be a sequence of sources")
     for source in sources:
+        require_kind("source", source, Source)
         if not (source.width / 2 <= source.place <= length - source.width / 2):
             raise ValueError(
                 f"source place = {source.place!r}, width = {source.width!r}: must lie on "

@@ -17,6 +17,13 @@ from numpy.polynomial import polynomial
 from numpy.typing import ArrayLike, NDArray
 
 from bcre_pde.explicit import ExplicitMethod, tableau
+from bcre_pde.gate import (
+    is_finite,
+    is_number,
+    require_kind,
+    require_not_negative,
+    require_positive,
+)
 from bcre_pde.material import Material
 from bcre_pde.problem import Array
 
@@ -29,6 +36,10 @@ def second_critical_slope(v: float, D: float, gamma: float, Sc: float) -> float:
     >>> second_critical_slope(v=1.0, D=1.0, gamma=0.5, Sc=0.5)
     1.0
     """
+    for name, value in (("v", v), ("D", D), ("gamma", gamma)):
+        require_not_negative(name, value)
+    if not is_finite(Sc):
+        raise ValueError(f"Sc = {Sc!r}: must be a finite number")
     if v == 0:
         return Sc
     return Sc + v**2 / (4 * D * gamma) if D * gamma > 0 else math.inf
@@ -168,6 +179,10 @@ def largest_explicit_step(material: Material, dx: float, largest_R: float) -> fl
     """
     from bcre_pde.exchange import exchanging  # late: slow to import
 
+    require_kind("material", material, Material)
+    require_positive("dx", dx)
+    if not is_number(largest_R):
+        raise ValueError(f"largest_R = {largest_R!r}: must be a number")
     wet = exchanging(largest_R, material.saturation)
     drift = max(material.v + material.Gamma * max(largest_R, 0.0), material.gamma * wet)
     spread = max(material.D, material.kappa * wet)

@@ -118,6 +118,8 @@ ARGUMENTS = {
     "margin": lambda x: bcre_ca.frames(PILE, RULE, [1.0], margin=x),
     "steps": lambda x: bcre_ca.evolve(PILE.h, PILE.R, RULE, x),
     "frozen": lambda x: bcre_ca.evolve(PILE.h, PILE.R, RULE, 1, frozen=x),
+    "sources": lambda x: bcre_ca.frames(PILE, RULE, [1.0], sources=x),
+    "supply": lambda x: bcre_ca.step(PILE.h, PILE.R, RULE, supply=x),
 }
 
 

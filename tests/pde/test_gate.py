@@ -98,6 +98,14 @@ ARGUMENTS = {
     "v_up": lambda x: Material(0.1, 0.1, 0.01, 0.5, v_up=x),
     "source width": lambda x: bcre_pde.source.Source(1.0, 2.0, x),
     "steps": lambda x: take_fixed_steps(SAND, np.ones(N), np.ones(N), 1.0, 0.1, x),
+    "stop": lambda x: bcre_pde.solve(STILL, [0.0], N, stop=x),
+    "source": lambda x: Problem(STILL.initial, SAND, 8.0, sources=[x]),
+    "material": lambda x: bcre_pde.largest_explicit_step(x, 1.0, 1.0),
+    "D": lambda x: bcre_pde.second_critical_slope(0.1, x, 0.01, 0.5),
+    "measure": lambda x: bcre_pde.solve_refined(STILL, [0.0], x, lambda _: 0.1),
+    "allowed": lambda x: bcre_pde.solve_refined(STILL, [0.0], lambda _: 0.1, x),
+    "ratio": lambda x: bcre_pde.grid_convergence_index(1.0, 2.0, 3.0, x),
+    "changed": lambda x: bcre_pde.error_of_finest([x, "a"]),
     "dx": lambda x: take_fixed_steps(SAND, np.ones(N), np.ones(N), x, 0.1, 1),
 }
 

@@ -297,7 +297,7 @@ def test_what_is_no_finite_number_or_negative_is_refused(bcre, key):
         "inf": "inf",
         "-inf": "-inf",
         "-1": "-1",
-        "-1e-9": "-1e-09",
+        "-1e-9": "-1e-9",
         "fast": "'fast'",
         '""': "''",
         "true": "True",

@@ -5,8 +5,11 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from bcre_ca.plane.theory import edge
+from bcre_ca.theory import second_critical_excess
 from bcre_pde.plane import Material, theory
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.system.files import REPORTS
@@ -30,6 +33,25 @@ def test_the_automaton_opens_within_a_fiftieth_of_a_degree_of_its_closed_form(ma
     assert expected - theory.opening_angle(m, m.Sc + excess) > 1
     again = trace.measured_in_automaton(m, excess, d, part=0.6)
     assert again.theta == pytest.approx(found.theta, abs=0.005)
+
+
+@settings(max_examples=4)
+@given(
+    v=st.floats(0.1, 0.4),
+    peclet=st.floats(0.5, 3.0),
+    ratio=st.floats(0.4, 2.5),
+    gamma=st.floats(0.02, 0.1),
+    part=st.floats(0.3, 0.7),
+)
+def test_the_automaton_opens_at_its_closed_form_whatever_the_material(
+    v, peclet, ratio, gamma, part
+):
+    """``peclet`` is that of a cell, ``part`` that of Sd - Sc at which the slope lies."""
+    D = v / peclet
+    excess = part * second_critical_excess(v, D, gamma, 1.0)
+    found = trace.measured_in_automaton(Material(v, D, ratio * D, gamma, 0.2), excess, 1.0)
+    expected = edge(v, D, ratio * D, gamma * excess, 1.0).theta
+    assert found.theta == pytest.approx(expected, abs=0.02)
 
 
 def test_bcre_opens_within_a_fifth_of_a_degree_of_its_closed_form():
@@ -88,6 +110,24 @@ def recorded():
 
 def verdicts(table):
     return {claim.name: claim.verdict for claim in study.judge({"comparison": table})}
+
+
+EXPECTED = {
+    (0.1, 1.0): {0.3: 20.9404, 0.5: 28.1079, 1.0: 44.6475, 1.5: 65.6192},
+    (0.3, 1.0): {0.3: 15.8416, 1.0: 34.5880, 1.5: 50.2419},
+    (0.1, 0.25): {0.5: 26.9300, 1.0: 40.4427, 1.5: 53.5857},
+}
+"""theta of the automaton by v and d and by S - Sc, with D = D_across = 0.1."""
+
+
+def test_every_angle_that_was_expected_was_measured_to_a_fiftieth_of_a_degree(recorded):
+    rows = recorded[(recorded["quantity"] == study.THETA) & (recorded["D across"] == 0.1)]
+    rows = rows.set_index(["v", "d", "S - Sc"])
+    for (v, d), angles in EXPECTED.items():
+        for excess, theta in angles.items():
+            row = rows.loc[(v, d, excess)]
+            assert row["automaton"] == pytest.approx(theta, abs=0.02)
+            assert row["pde"] == pytest.approx(row["pde_theory"], abs=0.2)
 
 
 def changed(table, quantity, column, value):

@@ -47,6 +47,8 @@ def verdicts(table):
 
 EXPECTED = {
     ("figure 1", 1.0): (0.14, 0.021),
+    ("figure 1", 0.5): (0.078, 0.008),
+    ("figure 1", 0.25): (0.040, 0.004),
     ("figure 2", 1.0): (0.53, 0.014),
     ("figure 2", 0.5): (0.34, 0.010),
     ("figure 2", 0.25): (0.20, 0.007),
@@ -54,13 +56,16 @@ EXPECTED = {
     ("figure 3", 0.5): (0.23, 0.008),
     ("figure 3", 0.25): (0.13, 0.005),
 }
+HALF_A_DIGIT = 0.0005
+"""The smaller of the numbers expected are known to one digit."""
 
 
-def test_the_report_has_the_differences_that_were_expected(recorded):
+def test_the_report_has_the_differences_that_were_expected_to_a_tenth(recorded):
     table = recorded.set_index(["case", "d"])
     for key, (nominal, effective) in EXPECTED.items():
         assert table.loc[key, study.NOMINAL] == pytest.approx(nominal, rel=0.1), key
-        assert table.loc[key, study.EFFECTIVE] == pytest.approx(effective, abs=0.003), key
+        allowed = 0.1 * effective + HALF_A_DIGIT
+        assert table.loc[key, study.EFFECTIVE] == pytest.approx(effective, abs=allowed), key
 
 
 def test_verdicts_turn_when_their_numbers_do(recorded):

@@ -90,8 +90,8 @@ def test_automaton_of_a_slope_driven_layer_differs_from_its_model_by_the_diffusi
     [(100, 1e-6, 1.96, 2.0), (100, 1.0, 1.25, 1.3), (400, 1.0, 1.4, 1.45), (400, 10.0, 0.98, 1.02)],
 )
 def test_slope_that_a_pulse_brings_down_is_steeper_on_finer_cells(cells, pulse, stands, falls):
-    assert not thresholds.comes_down("automaton", pulse, cells, stands)
-    assert thresholds.comes_down("automaton", pulse, cells, falls)
+    assert not measured.climbs(NAMED["automaton"], stands, pulse, cells)
+    assert measured.climbs(NAMED["automaton"], falls, pulse, cells)
 
 
 @pytest.mark.parametrize("near", [1.37, 2.9])

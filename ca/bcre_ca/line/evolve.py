@@ -15,6 +15,7 @@ from bcre_ca.gate import (
     layers_of,
     numbers_of,
     require,
+    require_all_of_kind,
     require_kind,
     require_start,
     whole,
@@ -178,6 +179,7 @@ def frames(
     require_ends(ends)
     pile = checked(pile)
     wanted = ascending(times, pile.t)
+    require_all_of_kind("sources", sources, Source)
     if not (is_number(margin) and 0 < margin <= 1):
         raise ValueError(f"margin = {margin!r}: must be a number > 0 and at most 1")
     fixed = 0.0

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from bcre_ca.coefficients import fold
 from bcre_ca.exchange import carried, deposit_thin, eroded, eroded_at_foot, leaving
-from bcre_ca.gate import require_kind
+from bcre_ca.gate import numbers_of, require_kind
 from bcre_ca.line import container, second_order, slope_driven
 from bcre_ca.line.drops import drops, period_drop
 from bcre_ca.line.pile import line_of, require_ends
@@ -76,6 +76,10 @@ def step(
     if frozen is not None:
         rule.require_upwind("a frozen slope")
         frozen, _ = line_of(frozen, R)
+    if supply is not None:
+        supply = numbers_of("supply", supply)
+        if supply.shape != h.shape:
+            raise ValueError(f"supply has shape {supply.shape}: must be that of h, {h.shape}")
     p = container.parameters_of(rule, ends, h.size, supply)
     if isinstance(p.scheme, SlopeDriven):
         return slope_driven.step(h, R, fold(p, float(rule.dt)))

@@ -157,7 +157,8 @@ def _expected(scene: PlaneScene, numbers: PlaneNumbers, frames: int) -> Iterator
     )
     known = _time(scene, (least, most), BCRE)
     yield "time, BCRE", f"{known}, {phrases.span_of_steps(least, most)} steps"
-    yield "", "on a processor of the record of speed, were all cells wet; compiling comes on top"
+    yield "", "on a processor of the record of speed, were all cells wet; of BCRE the right-hand"
+    yield "", "sides alone, with no step taken again; compiling comes on top"
 
 
 def _steps(scene: PlaneScene, numbers: PlaneNumbers) -> tuple[float, float]:

@@ -54,9 +54,11 @@ def slopes(numbers: Numbers, Sc: float, has_pulses: bool) -> Iterator[Line]:
     yield "critical slope", f"Sd = {ca} in the automaton, {pde} in BCRE"
     mean, least, most = numbers.slope
     is_even = most - least <= 1e-9 * max(abs(most), 1.0)
-    places = [("slope at start", mean)] if is_even else [("mean slope", mean), ("steepest", most)]
-    for name, slope in places:
-        yield name, f"S = {number(slope)}, {regime(slope, numbers, Sc)}"
+    if is_even:
+        yield "slope at start", f"S = {number(mean)}, {regime(mean, numbers, Sc)}"
+    else:
+        yield "slope at start", f"S = {number(least)} to {number(most)}, {number(mean)} in the mean"
+        yield "steepest", f"S = {number(most)}, {regime(most, numbers, Sc)}"
     if has_pulses and not is_even:
         yield "", "a thick pulse may climb below Sd too"
 

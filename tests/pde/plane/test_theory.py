@@ -89,3 +89,12 @@ def test_what_passes_neither_grows_nor_falls_along_the_edge():
 def test_what_passes_at_the_second_critical_slope_is_without_bound():
     with pytest.raises(ValueError, match=r"^S = 3.1: from the second critical slope on"):
         theory.passed_in_all(1.0, 0.0, 1.0, Material(0.1, 0.1, 0.1, 0.01, 0.5), 3.1)
+
+
+def test_explicit_step_is_that_of_what_rolls_or_under_a_thick_layer_of_what_climbs():
+    material = Material(1.0, 0.2, 0.1, 0.3, 0.5)
+    thin, thick = (theory.largest_explicit_step(material, 0.5, 0.4, R) for R in (0.1, 100.0))
+    spread = 272 / 45 * (0.2 / 0.5**2 + 0.1 / 0.4**2)
+    assert 2.78 / thin == pytest.approx(32 / 15 / 0.5 + spread)
+    assert 2.78 / thick == pytest.approx(32 / 15 * 0.3 * 100 / 0.5)
+    assert theory.largest_explicit_step(Material(0.0, 0.0, 0.0, 0.3, 0.5), 1, 1, 0.0) == math.inf

@@ -28,6 +28,7 @@ import pandas as pd
 from bcre_studies.comparison.claim import Claim
 from bcre_studies.comparison.verdict import Verdict
 from bcre_studies.comparison.wording import joined, sentences, when
+from bcre_studies.models.registry import BCRE
 from bcre_studies.sweeps.parallel import each
 from bcre_studies.validation.quasi_static_limit.drawing import draw_map
 from bcre_studies.validation.quasi_static_limit.heaps import (
@@ -77,7 +78,7 @@ def judge(tables: dict[str, pd.DataFrame]) -> list[Claim]:
     return [
         _rate_claim(found, "eps", "A slow exchange flattens the heap in proportion to eps"),
         _rate_claim(found, "tau", "A rolling layer takes sand from the heap in proportion to tau"),
-        _signs_claim(found),
+        _signs_claim(found, table),
         _limit_claim(table),
         _rule_claim(table, tables["heaps"]),
         _figures_claim(tables["figures"]),
@@ -102,10 +103,14 @@ def _rate_claim(found: pd.DataFrame, number: str, said: str) -> Claim:
     )
 
 
-def _signs_claim(found: pd.DataFrame) -> Claim:
+def _signs_claim(found: pd.DataFrame, table: pd.DataFrame) -> Claim:
     reach = found[found["quantity"] == "reach"].pivot(
         index="model", columns="number", values="coefficient"
     )
+    pde = table[table["model"] == BCRE.name]
+    least = pde["eps"].min()
+    line = pde[pde["eps"] == least].sort_values("tau")
+    (thin, thick), (fewer, more) = line["tau"].iloc[:2], line["error of h + R"].iloc[:2]
     opposite = bool((reach["eps"] * reach["tau"] < 0).all())
     cells = joined(f"{row.eps:+g} eps {row.tau:+g} tau ({row.Index})" for row in reach.itertuples())
     return Claim(
@@ -115,6 +120,11 @@ def _signs_claim(found: pd.DataFrame) -> Claim:
         sentences(
             f"The mean place of the sand at rest moves by {cells} of its distance",
             when(opposite, "so a small error of one quantity does not show that both are small"),
+            when(
+                fewer > more,
+                f"Of h + R the error of BCRE at eps = {least:g} is {fewer:.2g} where tau = "
+                f"{thin:g} and {more:.2g} where tau = {thick:g}: the two cancel in part",
+            ),
         ),
         "a sign",
     )

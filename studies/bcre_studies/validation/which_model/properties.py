@@ -23,7 +23,7 @@ from bcre_studies.models.registry import (
     Model,
 )
 from bcre_studies.models.run import Run
-from bcre_studies.observables.outcome import reached_the_top, slope
+from bcre_studies.observables.outcome import FALLEN, reached_the_top, slope
 from bcre_studies.scenes.scene import Scene, load
 
 Row = dict[str, Any]
@@ -107,17 +107,32 @@ def final_slope(subject: Subject, excess: float, pulse: float) -> float:
     return slope(run.x, run.h[-1]) - scene.material.Sc
 
 
-def climbs(subject: Subject, excess: float, pulse: float) -> bool:
-    """Whether the top comes down by t = 6000."""
+def climbs(
+    subject: Subject,
+    excess: float,
+    pulse: float,
+    cells: int | None = None,
+    until: float = LONGEST,
+    fallen: float = FALLEN,
+) -> bool:
+    """Whether the top comes down by ``until``: loses the part ``fallen`` of its excess height.
+
+    Parameters
+    ----------
+    cells: of a rule or an equation; left out, those of the figure, or :data:`CELLS`.
+    """
 
     def is_down(run: Run) -> bool:
-        return reached_the_top(run.x, run.u[0], run.u[-1])
+        return reached_the_top(run.x, run.u[0], run.u[-1], fallen=fallen)
 
     def over(run: Run) -> bool:
         return is_down(run) or (run.t[-1] > 0 and run.R[0].any() and not run.R[-1].any())
 
-    times = [float(t) for t in np.linspace(0.0, LONGEST, FRAMES)]
-    return is_down(subject.run(pulse_scene(excess, pulse, LONGEST), times, stop=over))
+    times = [float(t) for t in np.linspace(0.0, until, FRAMES)]
+    scene = pulse_scene(excess, pulse, until)
+    if cells is not None:
+        scene = scene.with_changes(cells=cells)
+    return is_down(subject.run(scene, times, cells or CELLS, stop=over))
 
 
 def least_excesses(subject: Subject) -> list[float]:

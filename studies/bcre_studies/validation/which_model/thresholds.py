@@ -9,18 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-import numpy as np
-
-from bcre_studies.models.run import Run
-from bcre_studies.observables.outcome import FALLEN, reached_the_top
-from bcre_studies.validation.which_model.properties import (
-    FRAMES,
-    LONGEST,
-    PULSES,
-    SUBJECTS,
-    Row,
-    pulse_scene,
-)
+from bcre_studies.observables.outcome import FALLEN
+from bcre_studies.validation.which_model.properties import LONGEST, PULSES, SUBJECTS, Row, climbs
 
 LOW, HIGH = 0.5, 3.2
 """No pulse brings the first of these slopes S0 - Sc down, and the thinnest brings the second."""
@@ -44,15 +34,17 @@ DEFINITIONS = ((LONGEST, 0.1), (LONGEST, 0.9), (LONGEST / 2, FALLEN), (2 * LONGE
 def thresholds(case: tuple[str, float]) -> list[Row]:
     """The thresholds of one pulse in one model: on finer and finer cells, by other definitions."""
     model, pulse = case
+    subject = next(one for one in SUBJECTS if one.name == model)
+    falls = partial(climbs, subject, pulse=pulse)
     rows, near = [], (LOW + HIGH) / 2
     for cells in GRIDS[model]:
-        near = _between(partial(comes_down, model, pulse, cells), near)
+        near = _between(partial(falls, cells=cells), near)
         rows.append(_row(model, pulse, cells, LONGEST, FALLEN, near))
     if model == RULE:
         cells = GRIDS[RULE][0]
         for until, fallen in DEFINITIONS:
-            falls = partial(comes_down, model, pulse, cells, until=until, fallen=fallen)
-            found = _between(falls, rows[0]["threshold"])
+            asked = partial(falls, cells=cells, until=until, fallen=fallen)
+            found = _between(asked, rows[0]["threshold"])
             rows.append(_row(model, pulse, cells, until, fallen, found))
     return rows
 
@@ -67,28 +59,6 @@ def _row(model: str, pulse: float, cells: int, until: float, fallen: float, foun
         "threshold": round(found, 2),
         "first of sparse slopes": next(excess for excess in SPARSE if excess > found),
     }
-
-
-def comes_down(
-    model: str,
-    pulse: float,
-    cells: int,
-    excess: float,
-    until: float = LONGEST,
-    fallen: float = FALLEN,
-) -> bool:
-    """Whether the pulse brings the slope Sc + excess down by ``until``."""
-    subject = next(one for one in SUBJECTS if one.name == model)
-
-    def is_down(run: Run) -> bool:
-        return reached_the_top(run.x, run.u[0], run.u[-1], fallen=fallen)
-
-    def over(run: Run) -> bool:
-        return is_down(run) or (run.t[-1] > 0 and not run.R[-1].any())
-
-    times = [float(t) for t in np.linspace(0.0, until, FRAMES)]
-    scene = pulse_scene(excess, pulse, until).with_changes(cells=cells)
-    return is_down(subject.run(scene, times, cells, stop=over))
 
 
 def _between(falls: Callable[[float], bool], near: float) -> float:
