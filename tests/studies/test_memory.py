@@ -15,7 +15,7 @@ from bcre_studies.scenes.scene import SceneError, load
 from bcre_studies.system import memory
 
 CASES = [
-    ("ca", 101, ["cells=30000", "until=0.001", "step=auto"]),
+    ("ca", 101, ["cells=8000", "until=0.001", "step=auto"]),
     ("pde", 101, ["solver.cells=6000", "until=0.001"]),
     ("pde", 2, ["solver.cells=4000", "until=0.0001", "method=BDF"]),
 ]
