@@ -49,6 +49,23 @@ def test_links_lead_somewhere(shown, name):
             assert ROOT.joinpath(unquote(address.removeprefix("file://"))).exists(), link
 
 
+@pytest.mark.parametrize("name", PAGES)
+def test_every_picture_can_be_decoded(shown, name):
+    broken, count = shown(name).evaluate(
+        """async () => {
+            const images = [...document.querySelectorAll("img, svg image")];
+            const read = images.map(async (image) => {
+                const copy = new Image();
+                copy.src = image.getAttribute("href") || image.getAttribute("src");
+                return copy.decode().then(() => false, () => true);
+            });
+            return [(await Promise.all(read)).filter(Boolean).length, images.length];
+        }"""
+    )
+    assert broken == 0
+    assert count > 0 or name != "index.html"
+
+
 def test_every_id_is_there_once_and_every_reference_has_one(shown):
     found = shown().evaluate(
         """() => {

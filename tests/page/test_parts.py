@@ -138,6 +138,16 @@ def test_panels_are_the_same_twice():
     assert "<dc:date>" not in first.text
 
 
+def test_a_map_in_a_panel_keeps_its_data():
+    drawn, (axis,) = style.panels(1, 1)
+    axis.imshow([[0.0, 1.0], [1.0, 0.0]])
+    (panel,) = Picture(drawn, "study").panels
+    (map_,) = ElementTree.fromstring(panel).iter("image")
+    kind, data = map_.attrib["href"].split(",")
+    assert kind == "data:image/png;base64"
+    assert base64.b64decode(data).startswith(b"\x89PNG")
+
+
 def test_label_of_a_legend_is_text():
     assert svg.in_html("a < b & c") == "a &lt; b &amp; c"
 

@@ -191,7 +191,9 @@ def _clean(part: ElementTree.Element, prefix: str, wanted: set[str]) -> None:
                 part.attrib["id"] = f"{prefix}-{value}"
             continue
         if name == HREF:
-            name, value = "href", f"#{prefix}-{value[1:]}"
+            name = "href"
+            if value.startswith("#"):  # else it is a picture's own data
+                value = f"#{prefix}-{value[1:]}"
         elif name == "clip-path":
             value = value.replace("#", f"#{prefix}-")
         elif name == "style":
