@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bcre_studies.comparison.wording import sentences
 from bcre_studies.publishing.stories.story import Story, Tables
 from bcre_studies.publishing.wording import fixed, of, percent, span, span_of
 
@@ -31,10 +32,12 @@ def _sensitivity(tables: Tables) -> list[str]:
     return [
         "The variance of each property over the ranges of its eight parameters is shared out "
         "among them.",
-        "; ".join(
-            f"{name}: {row['parameter']} has part in {percent(row['total_order'])}"
-            for name, row in leading.iterrows()
-        ).capitalize()
+        sentences(
+            "; ".join(
+                f"{name}: {row['parameter']} has part in {percent(row['total_order'])}"
+                for name, row in leading.iterrows()
+            )
+        )
         + ".",
         f"The cells have part in {span_of(cells)}, the step in {span_of(step)}.",
     ]
