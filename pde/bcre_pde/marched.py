@@ -11,6 +11,9 @@ from pde import FieldCollection, PDEBase
 from bcre_pde import sums
 from bcre_pde.problem import Array
 
+DOUBLE = np.dtype(np.float64)
+"""The one object that every array of native double precision has as its type."""
+
 
 class Marched(PDEBase):  # type: ignore[misc]
     """An equation for three fields: the surface u, the rolling layer R, and "ends".
@@ -77,12 +80,11 @@ class Marched(PDEBase):  # type: ignore[misc]
             for arrays of another shape or type than the state's, which compiled code would take
             for it.
         """
-        for name, array in (("layers", layers), ("out", out)):
-            if array.shape != self._layers.shape or array.dtype != np.float64:
-                raise ValueError(
-                    f"{name} has the shape {array.shape} and the type {array.dtype}: must be "
-                    f"{self._layers.shape} and float64"
-                )
+        shape = self._layers.shape
+        if layers.shape != shape or layers.dtype is not DOUBLE:
+            raise _not_a_state("layers", layers, shape)
+        if out.shape != shape or out.dtype is not DOUBLE:
+            raise _not_a_state("out", out, shape)
         self.evaluations += 1
         self.last_time = t
         self.last_layers = layers
@@ -92,3 +94,10 @@ class Marched(PDEBase):  # type: ignore[misc]
                 "that is allowed"
             )
         self.rate(layers, out)
+
+
+def _not_a_state(name: str, array: Array, shape: tuple[int, ...]) -> ValueError:
+    return ValueError(
+        f"{name} has the shape {array.shape} and the type {array.dtype}: must be {shape} "
+        "and float64"
+    )
