@@ -119,8 +119,7 @@ def require_positive(name: str, value: Any) -> None:
 
 def whole(name: str, number: Any, least: int = 0) -> int:
     """The whole number; ValueError where it is none, or too small."""
-    is_number = is_finite(number) and not isinstance(number, (bool, np.bool_))
-    if not (is_number and float(number).is_integer() and number >= least):
+    if not (is_finite(number) and float(number).is_integer() and number >= least):
         raise ValueError(f"{name} = {number!r}: must be a whole number >= {least}")
     return int(number)
 

@@ -65,8 +65,7 @@ def is_number(value: Any) -> bool:
 
 def whole(name: str, value: Any, least: int) -> int:
     """The whole number; ValueError where it is none, or too small."""
-    is_number = is_finite(value) and not isinstance(value, (bool, np.bool_))
-    if not (is_number and float(value).is_integer() and value >= least):
+    if not (is_finite(value) and float(value).is_integer() and value >= least):
         raise ValueError(f"{name} = {value!r}: must be a whole number, at least {least}")
     return int(value)
 

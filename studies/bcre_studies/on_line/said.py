@@ -17,7 +17,7 @@ from bcre_studies.models.registry import MODELS
 from bcre_studies.models.run import Run
 from bcre_studies.on_line.frames import time_unit
 from bcre_studies.on_line.quantities import Quantity
-from bcre_studies.running.columns import BOLD, headed
+from bcre_studies.running.columns import BOLD, add_effort, headed
 from bcre_studies.system.one_line import one_line
 
 DIGITS = 4
@@ -47,16 +47,9 @@ def table(runs: Sequence[Run], found: Sequence[Quantity]) -> Table:
         cells += [_gap(quantity, quantity.error, 1)] if is_known else []
         cells += [_gap(quantity, quantity.apart, 2)] if len(runs) == 2 else []
         shown.add_row(Text(name), *cells)
-    for name, values in _taken(runs):
-        shown.add_row(name, *values)
+    shown.add_row("cells", *(f"{run.x.size}" for run in runs))
+    add_effort(shown, runs)
     return shown
-
-
-def _taken(runs: Sequence[Run]) -> Iterator[tuple[str, list[str]]]:
-    yield "cells", [f"{run.x.size}" for run in runs]
-    yield "steps", [f"{run.steps}" for run in runs]
-    yield "time of the run", [f"{significant(run.wall_s, 2):g} s" for run in runs]
-    yield "balance of mass", [f"{run.mass_error():.1e}" for run in runs]
 
 
 def verdict(runs: Sequence[Run], layer: Quantity) -> str:

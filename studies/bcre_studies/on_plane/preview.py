@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import pandas as pd
 
 from bcre_ca.plane import MARGIN
+from bcre_pde.explicit import FEHLBERG
 from bcre_studies.models.plane.bcre import problem_of, require_taken
 from bcre_studies.models.registry import AUTOMATON, BCRE, Model
 from bcre_studies.on_plane import equations
@@ -24,8 +25,6 @@ from bcre_studies.system.records import record
 
 FRAMES_A_SECOND = 60
 RIGHT_HAND_SIDE = "BCRE right-hand side, 1e6 cells/s"
-EVALUATIONS_A_STEP = 6
-"""Of BCRE's right-hand side."""
 
 
 def lines(scene: PlaneScene, frames: int) -> Iterator[Line]:
@@ -37,7 +36,7 @@ def lines(scene: PlaneScene, frames: int) -> Iterator[Line]:
         where the scene would not fit into memory, or the automaton does not take it.
     """
     require_memory(scene, frames, models=1)
-    numbers = numbers_of(scene)
+    numbers, without = numbers_of(scene), _without_bcre(scene)
     yield "scene", one_line(scene.title)
     for name, rows in equations.of(scene, numbers.rule):
         yield from phrases.under(name, rows)
@@ -45,12 +44,12 @@ def lines(scene: PlaneScene, frames: int) -> Iterator[Line]:
     yield phrases.time(scene.time.until, scene.units.time, numbers, scene.time.step == "auto")
     yield from phrases.dimensionless(numbers)
     yield from _effective(scene, numbers)
-    yield from phrases.under("stable steps", _stable(scene, numbers))
+    yield from phrases.under("stable steps", _stable(scene, numbers, without))
     yield from phrases.slopes(numbers, scene.material.Sc, bool(scene.rolling))
     if scene.automaton.flow != "tilted":
         yield "", "Sd is that of a slope which falls along an axis of the cells, as on a line"
     yield "opening angle", _opening(scene, numbers)
-    yield from _expected(scene, numbers, frames)
+    yield from _expected(scene, numbers, frames, without)
 
 
 def _domain(scene: PlaneScene, numbers: PlaneNumbers) -> list[str]:
@@ -92,12 +91,11 @@ def _effective(scene: PlaneScene, numbers: PlaneNumbers) -> Iterator[Line]:
     )
 
 
-def _stable(scene: PlaneScene, numbers: PlaneNumbers) -> list[str]:
+def _stable(scene: PlaneScene, numbers: PlaneNumbers, without: str) -> list[str]:
     law = "d/(2 gamma R)" if scene.automaton.flow == "split4" else "d/(gamma R)"
     wave = f"{law} = {number(numbers.wave_step(numbers.largest_R))} at the start, "
     least = numbers.wave_step(numbers.thickest)
     wave += f"at least {number(least)} later, " if least > 0 else "less under thicker layers, "
-    without = _without_bcre(scene)
     step = "" if without else number(_step_of_bcre(scene, numbers.largest_R))
     return [
         f"automaton: dt <= {number(numbers.layer_step)} keeps R >= 0",
@@ -134,8 +132,9 @@ def _opening(scene: PlaneScene, numbers: PlaneNumbers) -> str:
     )
 
 
-def _expected(scene: PlaneScene, numbers: PlaneNumbers, frames: int) -> Iterator[Line]:
-    without = _without_bcre(scene)
+def _expected(
+    scene: PlaneScene, numbers: PlaneNumbers, frames: int, without: str
+) -> Iterator[Line]:
     for models, which in ((1, "the automaton"), (2, "both models")):
         if models == 1 or not without:
             taken = phrases.size(memory_of(scene, frames, models))
@@ -188,8 +187,8 @@ def _rates_of_automaton() -> tuple[float, float]:
 
 
 def _rates_of_bcre() -> tuple[float, float]:
-    """Cell-steps a second, six evaluations of the right-hand side a step."""
+    """Cell-steps a second, as many evaluations of the right-hand side a step as it has stages."""
     rows = pd.read_csv(record("speed/plane.csv")).set_index("ratio")
     (row,) = (rows.loc[name] for name in rows.index if name.startswith(RIGHT_HAND_SIDE))
-    scale = 1e6 / EVALUATIONS_A_STEP
+    scale = 1e6 / FEHLBERG.weights.size
     return float(row["from"]) * scale, float(row["to"]) * scale

@@ -16,7 +16,7 @@ from bcre_studies.comparison.difference import relative_difference
 from bcre_studies.comparison.rounding import significant
 from bcre_studies.models.plane.run import PlaneRun
 from bcre_studies.models.registry import MODELS
-from bcre_studies.running.columns import BOLD, headed
+from bcre_studies.running.columns import BOLD, add_effort, headed
 from bcre_studies.system.one_line import one_line
 
 MOVED = 1e-3
@@ -90,20 +90,13 @@ def table(runs: Sequence[PlaneRun]) -> Table:
             cells.append(_percent(relative_difference(*values)))
         power = f"^{quantity.power}" if quantity.power > 1 else ""
         shown.add_row(Text(f"{quantity.name} ({unit}{power})"), *cells)
-    for name, texts in _taken(runs):
-        shown.add_row(name, *texts)
+    shown.add_row("cells", *(" x ".join(map(str, run.scene.domain.shape)) for run in runs))
+    add_effort(shown, runs)
     return shown
 
 
 def _percent(share: float) -> str:
     return f"{significant(100 * share, 2):g} %" if math.isfinite(share) else ""
-
-
-def _taken(runs: Sequence[PlaneRun]) -> Iterator[tuple[str, list[str]]]:
-    yield "cells", [" x ".join(map(str, run.scene.domain.shape)) for run in runs]
-    yield "steps", [f"{run.steps}" for run in runs]
-    yield "time of the run", [f"{significant(run.wall_s, 2):g} s" for run in runs]
-    yield "balance of mass", [f"{run.mass_error():.1e}" for run in runs]
 
 
 def record(runs: Sequence[PlaneRun]) -> list[dict[str, Any]]:

@@ -6,6 +6,10 @@ from collections.abc import Sequence
 
 from rich.table import Table
 
+from bcre_studies.comparison.rounding import significant
+from bcre_studies.models.plane.run import PlaneRun
+from bcre_studies.models.run import Run
+
 BOLD = "apart"
 """The column that readers look for."""
 
@@ -17,3 +21,10 @@ def headed(heads: Sequence[str]) -> Table:
     for head in heads:
         table.add_column(head, justify="right", style="bold" if head == BOLD else None)
     return table
+
+
+def add_effort(table: Table, runs: Sequence[Run] | Sequence[PlaneRun]) -> None:
+    """What each run took, and whether it kept its sand."""
+    table.add_row("steps", *(f"{run.steps}" for run in runs))
+    table.add_row("time of the run", *(f"{significant(run.wall_s, 2):g} s" for run in runs))
+    table.add_row("balance of mass", *(f"{run.mass_error():.1e}" for run in runs))

@@ -32,8 +32,7 @@ def doubts(scene: Scene | PlaneScene) -> Iterator[str]:
         for index, term in enumerate(terms):
             if term.kind != "table":
                 continue
-            marks = np.unique(term.measured()[np.isin(term.measured(), MISSING)])
-            for mark in marks.tolist():
+            for mark in np.intersect1d(term.measured(), MISSING).tolist():
                 yield (
                     f"{layer}.{index}.file = {term.file!r} holds {mark:g}, by which missing values "
                     "are often marked; here it is taken as measured"

@@ -96,11 +96,11 @@ def _limited(
     limited = np.zeros(x.size - 1, dtype=bool)
     left, right = slopes[:-1], slopes[1:]
     while True:
-        rise = np.maximum(
-            _rise_beyond_rows(x, values, left, right),
-            _rise_beyond_rows(x, values - tilt * x, left - tilt, right - tilt),
-        )
-        beyond = ~limited & (rise > allowed)
+        rises = [
+            _rise_beyond_rows(x, values - taken * x, left - taken, right - taken)
+            for taken in {0.0, tilt}
+        ]
+        beyond = ~limited & (np.max(rises, axis=0) > allowed)
         if not beyond.any():
             return left, right, limited
         limited |= beyond

@@ -59,15 +59,16 @@ def read_columns(key: str, path: Path, column: str) -> tuple[Array, Array]:
     for name in ("x", column):
         if head.count(name) != 1:
             raise refuse(f"has columns {', '.join(head)[:80]}; must have x,{column}, each once")
+    at = {name: head.index(name) for name in ("x", column)}
     x, values = (
-        np.array([_number(name, row.fields[head.index(name)], row.line, refuse) for row in rows])
-        for name in ("x", column)
+        np.array([_number(name, row.fields[place], row.line, refuse) for row in rows])
+        for name, place in at.items()
     )
     if x.size < 4:
         raise refuse(f"has {x.size} rows; must have at least 4")
     if not (np.diff(x) > 0).all():
         row = rows[int(np.argmax(~(np.diff(x) > 0))) + 1]
-        raise refuse(f"line {row.line}: x = {row.fields[head.index('x')].strip()}: x must ascend")
+        raise refuse(f"line {row.line}: x = {row.fields[at['x']].strip()}: x must ascend")
     return x, values
 
 
@@ -89,8 +90,9 @@ def _rows(path: Path, refuse: Callable[[str], ProfileError]) -> tuple[list[str],
         raise refuse(f"must be a CSV file in UTF-8: {' '.join(str(error).split())[:100]}") from None
     if not rows:
         raise refuse("is empty; must be a CSV file with a head")
+    head = rows[0]
     for row in rows:
-        if why := _not_a_row(row, head := rows[0]):
+        if why := _not_a_row(row, head):
             raise refuse(f"line {row.line}, {','.join(row.fields)[:60]!r}: {why}")
     return [name.strip() for name in head.fields], rows[1:]
 

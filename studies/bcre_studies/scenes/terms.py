@@ -89,13 +89,26 @@ class Noise(Term):
         return f"kind = 'noise': its shortest wave is length/{NOISE_WAVES}; needs {least} cells"
 
 
-class TableSurface(Term):
-    """h from a CSV file with columns x,h: a function through the heights above the repose line."""
+class FromTable(Term):
+    """A profile from a CSV file with the column x and one of values."""
 
     kind: Literal["table"]
     file: str
     _profile: Any = PrivateAttr(default=None)
     _measured: Any = PrivateAttr(default=None)
+
+    def measured(self) -> Array:
+        """The rows of the file as they are."""
+        assert self._measured is not None
+        return np.asarray(self._measured)
+
+    def beyond(self, domain: Domain, cells: int) -> str:
+        return _table_beyond(self.file, self._profile, domain, cells)
+
+
+class TableSurface(FromTable):
+    """h from a CSV file with columns x,h: a function through the heights above the repose line."""
+
     _tilt: float = PrivateAttr(default=0.0)
 
     def load(self, key: str, folder: Path, domain: Domain, tilt: float) -> None:
@@ -104,17 +117,9 @@ class TableSurface(Term):
         what = f"{key}.file = {self.file!r}: h + Sc x"
         self._profile = profile(what, x, h + tilt * x, domain, tilt)
 
-    def measured(self) -> Array:
-        """The rows of the file as they are."""
-        assert self._measured is not None
-        return np.asarray(self._measured)
-
     def height(self, x: Array, domain: Domain) -> Array:
         assert self._profile is not None
         return np.asarray(self._profile(x)) - self._tilt * x
-
-    def beyond(self, domain: Domain, cells: int) -> str:
-        return _table_beyond(self.file, self._profile, domain, cells)
 
 
 class Gaussian(Term):
@@ -149,13 +154,8 @@ class Uniform(Term):
         return np.full_like(x, self.amplitude)
 
 
-class TableRolling(Term):
+class TableRolling(FromTable):
     """R from a CSV file with columns x,R: a function through them, cut off at zero between."""
-
-    kind: Literal["table"]
-    file: str
-    _profile: Any = PrivateAttr(default=None)
-    _measured: Any = PrivateAttr(default=None)
 
     def load(self, key: str, folder: Path, domain: Domain) -> None:
         x, R = read_table(key, folder / self.file, "R", domain)
@@ -168,17 +168,9 @@ class TableRolling(Term):
         self._measured = R
         self._profile = profile(f"{key}.file = {self.file!r}: R", x, R, domain)
 
-    def measured(self) -> Array:
-        """The rows of the file as they are."""
-        assert self._measured is not None
-        return np.asarray(self._measured)
-
     def layer(self, x: Array, domain: Domain) -> Array:
         assert self._profile is not None
         return np.asarray(np.maximum(self._profile(x), 0.0))
-
-    def beyond(self, domain: Domain, cells: int) -> str:
-        return _table_beyond(self.file, self._profile, domain, cells)
 
 
 def _table_beyond(file: str, function: PPoly, domain: Domain, cells: int) -> str:
